@@ -19,7 +19,7 @@ const OPTIONS: ViewOptions = ViewOptions {
     background: None,
 };
 
-/// A hybrid is at most 0.8 dB behind far voxels and triangles of the same mesh.
+/// A hybrid is at most half a decibel behind far voxels and triangles of the same mesh, at 40 pixels 0.8.
 #[test]
 fn thin_meshes_keep_their_area_and_are_as_good_as_the_best_method() {
     for kind in [Kind::Tower, Kind::Fence, Kind::Grass, Kind::Chains] {
@@ -32,7 +32,7 @@ fn thin_meshes_keep_their_area_and_are_as_good_as_the_best_method() {
             };
             file_of(&build(&mesh, &options, &Silent).unwrap())
         });
-        for size in [60, 40, 20] {
+        for (size, most) in [(190, 0.5), (60, 0.5), (40, 0.8), (20, 0.5)] {
             let (mut areas, mut squares) = ([0.0; 2], [0.0f64; 3]);
             for towards in directions(4) {
                 let view = around(&mesh, towards, 2.0, size);
@@ -50,7 +50,7 @@ fn thin_meshes_keep_their_area_and_are_as_good_as_the_best_method() {
             let bias: f64 = areas[0] / areas[1] - 1.0;
             let behind = 10.0 * libm::log10(squares[0] / squares[1].min(squares[2]));
             assert!(bias.abs() < 0.12, "{kind:?}, {size} pixels: {bias:+.3}");
-            assert!(behind < 0.8, "{kind:?}, {size} pixels: {behind:+.2} dB");
+            assert!(behind < most, "{kind:?}, {size} pixels: {behind:+.2} dB");
         }
     }
 }

@@ -78,7 +78,7 @@ impl<'s> Occluders<'s> {
         Ok(Self { parts, stops, held })
     }
 
-    /// The triangles that stop rays, which begin within a box.
+    /// The triangles that stop rays, which are within a box.
     pub(super) fn nearest(
         &self,
         within: &Around,
@@ -87,8 +87,9 @@ impl<'s> Occluders<'s> {
     ) -> io::Result<()> {
         meetings.clear();
         meetings.resize(queries.len(), Meeting::NONE);
-        // The nearest first: what is met there hides what is behind.
+        // Those in the middle first: most rays end there, and hide what is behind.
         let parts = self.parts.iter().enumerate();
+        let parts = parts.filter(|(_, part)| part.around.touches(within));
         let near = parts.map(|(number, part)| (part.around.square_from(within), number));
         let mut near: Vec<(f32, usize)> = near.collect();
         near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

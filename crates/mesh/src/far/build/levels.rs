@@ -1,7 +1,16 @@
 //! Coarser nodes above the root, and the choice of nodes that have voxels (`spec/far.md`, Grid).
 
+use rayon::prelude::*;
+
+use super::node::{MOST_RAYS, Maker};
+use super::sample::Rays;
 use super::split::Branch;
-use super::touch::Touches;
+use super::touch::{self, Touches};
+use crate::texture::paint::Paint;
+use shiftvox::graph::Progress;
+
+/// Rays for each kept voxel, if no number is given.
+const RAYS_PER_VOXEL: u32 = 20;
 
 /// Of the side of the next node above that has voxels.
 const STEP: f64 = 0.7;
@@ -22,8 +31,69 @@ fn is_left_out(touched: &Touches, triangles: usize) -> bool {
     touched.voxels as usize / most >= triangles
 }
 
+/// The rays of each node, none where it has no voxels.
+pub(super) fn rays(
+    maker: &Maker<'_>,
+    branches: &[Branch],
+    progress: &dyn Progress,
+) -> Vec<Option<Rays>> {
+    let Maker {
+        options,
+        triangles,
+        coarser,
+        ..
+    } = *maker;
+    let surface = triangles.surface;
+    progress.begin("find voxels", surface.len() as u64);
+    // A hybrid keeps all its nodes, unless most are of voxels, which may take more than their triangles.
+    let is_painted = |&number: &usize| {
+        let (paint, _) = maker.textures.paint(&surface.triangle(number));
+        paint != Paint::NONE
+    };
+    let painted = (0..surface.len()).filter(is_painted);
+    let keeps_nodes = options.hybrid && 2 * painted.count() <= surface.len();
+    let mut has_voxels = match options.hybrid {
+        true => vec![true; branches.len()],
+        false => with_voxels(branches, coarser),
+    };
+    let touched = |(number, branch): (usize, &Branch)| {
+        if branch.children.is_none() {
+            progress.advance(branch.count as u64);
+            return None;
+        }
+        let grid = has_voxels[number].then(|| maker.grid(number, branch))?;
+        let may_be_left = !keeps_nodes && number > coarser;
+        let is_of_use = options.rays.is_some() || may_be_left;
+        let corners = branch.triangles().map(|number| triangles.corners(number));
+        is_of_use.then(|| touch::count(&grid, corners))
+    };
+    let touched: Vec<Option<Touches>> = branches.par_iter().enumerate().map(touched).collect();
+    if !keeps_nodes {
+        leave_out(&mut has_voxels, branches, &touched, coarser);
+    }
+    progress.end();
+    let voxels = |number: usize| match &touched[number] {
+        Some(touched) if has_voxels[number] => touched.voxels,
+        _ => 0,
+    };
+    let all: u64 = (0..branches.len())
+        .map(|number| u64::from(voxels(number)))
+        .sum();
+    let share = |number: usize| match options.rays {
+        None => Rays::PerVoxel(RAYS_PER_VOXEL),
+        Some(rays) => {
+            let own = voxels(number);
+            let share = u128::from(rays) * u128::from(own) / u128::from(all.max(1));
+            Rays::InAll(share.clamp(u128::from(own > 0), u128::from(MOST_RAYS)) as u32)
+        }
+    };
+    (0..branches.len())
+        .map(|number| has_voxels[number].then(|| share(number)))
+        .collect()
+}
+
 /// Whether each node is a leaf or has voxels; `coarser` nodes above the root of the hierarchy, and the root, have.
-pub(super) fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
+fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
     let mut has_voxels = vec![true; branches.len()];
     let mut above = vec![f64::INFINITY; branches.len()];
     for (number, branch) in branches.iter().enumerate() {
@@ -43,7 +113,7 @@ pub(super) fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
     has_voxels
 }
 
-pub(super) fn leave_out(
+fn leave_out(
     has_voxels: &mut [bool],
     branches: &[Branch],
     touched: &[Option<Touches>],

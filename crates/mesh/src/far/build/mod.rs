@@ -8,6 +8,7 @@ mod compare;
 mod count;
 mod grid;
 mod levels;
+mod node;
 mod ordered;
 mod parts;
 mod rays;
@@ -31,28 +32,20 @@ use glam::DVec3;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3;
 
-use super::record::{LeafTriangle, Node, Opacity};
-use super::store::pack::pack;
-use super::store::surface::lay_out;
+use super::record::{Node, Opacity};
 use super::store::{VERSION, write_parts};
 use super::{FarData, FarSettings};
-use crate::material::to_srgb;
-use crate::texture::paint::{Paint, Textures};
+use crate::texture::paint::Textures;
 use crate::{Sampler, Surface, mesh_box};
 use clusters::{CLUSTER, Occluders, Part, Stops};
-use count::Seen;
-use grid::Grid;
+use node::Maker;
 use ordered::Ordered;
 use rays::Around;
 use room::{Room, shares};
-use sample::Rays;
-use shader_fit::ShaderFit;
-use shiftvox::graph::{PackedNormal, Progress, place};
-use shot::Target;
+use shiftvox::graph::{Progress, place};
 use split::{Branch, split};
-use spool::{Done, Made, Spool};
-use surface::{MOST_TRIANGLES, Surfaces};
-use touch::Touches;
+use spool::{Done, Spool};
+use surface::Surfaces;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BuildOptions {
@@ -68,13 +61,6 @@ pub struct BuildOptions {
     /// Whether what is wider than a voxel stays a decimated surface.
     pub hybrid: bool,
 }
-
-/// Rays for each kept voxel, if no number is given.
-const RAYS_PER_VOXEL: u32 = 20;
-const MOST_RAYS: u32 = 1 << 22;
-/// Bytes per ray of a node that is sampled, or less: 40 of its own, and 20 per voxel that it crosses.
-const RAY_BYTES: u64 = 160;
-const RAYS_AT_VOXEL: u64 = 32;
 
 impl Default for BuildOptions {
     fn default() -> Self {
@@ -252,22 +238,10 @@ fn fill<F: Read + Write + Seek + Send>(
     let fewest = options.leaf_triangles as usize;
     let (mut branches, order) = split(surface.len(), corners, fewest);
     let coarser = levels::put_above(&mut branches, options.grid);
-    progress.end();
-    let textures = Textures::new(surface.textures());
-    // A hybrid keeps all its nodes, unless most are of voxels, which may take more than their triangles.
-    let is_painted = |&number: &usize| {
-        let (paint, _) = textures.paint(&surface.triangle(number));
-        paint != Paint::NONE
-    };
-    let painted = (0..surface.len()).filter(is_painted);
-    let keeps_nodes = options.hybrid && 2 * painted.count() <= surface.len();
-    let mut has_voxels = match options.hybrid {
-        true => vec![true; branches.len()],
-        false => levels::with_voxels(&branches, coarser),
-    };
     if u32::try_from(branches.len()).is_err() {
         return Err(BuildError::TooMany(format!("{} nodes", branches.len())));
     }
+    progress.end();
     let triangles = Ordered {
         surface,
         order: &order,
@@ -287,39 +261,19 @@ fn fill<F: Read + Write + Seek + Send>(
     let occluders = Occluders::new(parts, corners, stops, within);
     let occluders = occluders.map_err(|e| failed(folder, &e))?;
     progress.end();
-    let leaf = |own: Range<usize>| leaf_triangles(surface, &order[own], centre, Some(&textures));
-    let surfaces = options
-        .hybrid
-        .then(|| Surfaces::new(surface, &order, centre, options, &branches, &textures));
-    let grid = |number: usize, branch: &Branch| {
-        let (low, high) = (triangles.place(branch.low), triangles.place(branch.high));
-        Grid::around(low, high, levels::grid_of(number, coarser, options.grid))
+    let textures = Textures::new(surface.textures());
+    let surfaces = || Surfaces::new(surface, &order, centre, options, &branches, &textures);
+    let maker = Maker {
+        options,
+        triangles: &triangles,
+        textures: &textures,
+        surfaces: options.hybrid.then(surfaces),
+        occluders: &occluders,
+        room: Room::new(shares.nodes),
+        folder,
+        coarser,
     };
-    progress.begin("find voxels", order.len() as u64);
-    let touched = |(number, branch): (usize, &Branch)| {
-        if branch.children.is_none() {
-            progress.advance(branch.count as u64);
-            return None;
-        }
-        let grid = has_voxels[number].then(|| grid(number, branch))?;
-        let may_be_left = !keeps_nodes && number > coarser;
-        let is_of_use = options.rays.is_some() || may_be_left;
-        is_of_use.then(|| touch::count(&grid, corners(branch.triangles())))
-    };
-    let numbered = || branches.par_iter().enumerate();
-    let touched: Vec<Option<Touches>> = numbered().map(touched).collect();
-    if !keeps_nodes {
-        levels::leave_out(&mut has_voxels, &branches, &touched, coarser);
-    }
-    progress.end();
-    let rays = match options.rays {
-        None => vec![Rays::PerVoxel(RAYS_PER_VOXEL); branches.len()],
-        Some(rays) => {
-            let touched = touched.iter().zip(&has_voxels);
-            let touched = touched.map(|(n, has)| n.filter(|_| *has).map_or(0, |n| n.voxels));
-            share_rays(&touched.collect::<Vec<u32>>(), rays)
-        }
-    };
+    let rays = levels::rays(&maker, &branches, progress);
     let unfinished = outside.and_then(|outside| outside.unfinished);
     let key = unfinished.map_or(0, |_| key_of(surface, options));
     let kept_in = unfinished.unwrap_or(folder);
@@ -329,79 +283,31 @@ fn fill<F: Read + Write + Seek + Send>(
         problem: "it was begun of another mesh, or with other options: remove it".to_owned(),
     })?;
     progress.begin("shoot rays", order.len() as u64);
-    let room = Room::new(shares.nodes);
-    let make = |number: usize, branch: &Branch| {
-        let mut node = outline(branch, centre);
-        if branch.children.is_none() {
-            let own = branch.triangles();
-            let data = match &surfaces {
-                Some(surfaces) => surfaces.leaf(&mut node, own),
-                None => {
-                    let bytes = lay_out(&mut node, &leaf(own), |_| true);
-                    pack(&Default::default(), &bytes)
-                }
-            };
-            return Ok(made(node, data));
-        }
-        if !has_voxels[number] {
-            return Ok(made(node, pack(&Default::default(), &[])));
-        }
-        let grid = grid(number, branch);
-        set_grid(&mut node, &grid, scale);
-        // The root has seed 0, whatever its number.
-        let seed = (number as u64).wrapping_sub(coarser as u64);
-        let voxels = |node: &mut Node, taken: Option<&[bool]>| {
-            let target = Target {
-                occluders: &occluders,
-                grid,
-                own: branch.triangles(),
-                taken,
-                distance: options.distance_voxels,
-            };
-            let rays = rays[number];
-            let lists = fit(node, &target, rays, seed, &triangles, &room, options);
-            lists.map_err(|e| failed(folder, &e))
-        };
-        match &surfaces {
-            Some(surfaces) if branch.count <= MOST_TRIANGLES => {
-                let some = |node: &mut Node, taken: &[bool]| voxels(node, Some(taken));
-                surfaces.inner(&node, branch.triangles(), some)
-            }
-            _ => {
-                let lists = voxels(&mut node, None)?;
-                Ok(made(node, pack(&lists, &[])))
-            }
-        }
-    };
     let is_done: Vec<bool> = (0..branches.len()).map(|n| spool.is_done(n)).collect();
     let spool = Mutex::new(spool);
-    numbered().try_for_each(|(number, branch)| {
-        if !is_done[number] {
-            let made = make(number, branch)?;
-            let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
-            let added = spool.add(number, &made);
-            added.map_err(|e| failed(kept_in, &e))?;
-        }
-        if branch.children.is_none() {
-            progress.advance(branch.count as u64);
-        }
-        Ok(())
-    })?;
+    branches
+        .par_iter()
+        .enumerate()
+        .try_for_each(|(number, branch)| {
+            if !is_done[number] {
+                let made = maker.node(number, branch, rays[number])?;
+                let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
+                let added = spool.add(number, &made);
+                added.map_err(|e| failed(kept_in, &e))?;
+            }
+            if branch.children.is_none() {
+                progress.advance(branch.count as u64);
+            }
+            Ok(())
+        })?;
     progress.end();
     let spool = spool.into_inner().unwrap_or_else(PoisonError::into_inner);
     let mut data = assemble(&spool, centre, options)?;
     data.undecimated = spool.nodes().filter(|done| done.is_undecimated).count() as u32;
     data.settings.bevels = mesh_box(surface, data.settings.y_up).bevels;
+    drop(maker);
     data.textures = textures.list;
     Ok((data, spool))
-}
-
-fn made(node: Node, data: Vec<u8>) -> Made {
-    Made {
-        node,
-        data,
-        is_undecimated: false,
-    }
 }
 
 fn parts(branches: &[Branch], place: impl Fn(DVec3) -> DVec3) -> Vec<Part> {
@@ -467,97 +373,6 @@ fn centre(surface: &dyn Surface) -> Result<(DVec3, f64), BuildError> {
     let centre = place::centre(low.to_array(), high.to_array()).into();
     let (_, power) = libm::frexp(extent);
     Ok((centre, libm::ldexp(1.0, -power)))
-}
-
-fn share_rays(touched: &[u32], rays: u64) -> Vec<Rays> {
-    let all: u64 = touched.iter().map(|&n| u64::from(n)).sum();
-    let share = |&n: &u32| {
-        let share = u128::from(rays) * u128::from(n) / u128::from(all.max(1));
-        Rays::InAll(share.clamp(u128::from(n > 0), u128::from(MOST_RAYS)) as u32)
-    };
-    touched.iter().map(share).collect()
-}
-
-fn outline(branch: &Branch, centre: DVec3) -> Node {
-    let single = |p: DVec3| (p - centre).as_vec3().to_array();
-    Node {
-        low: single(branch.low),
-        high: single(branch.high),
-        is_leaf: u8::from(branch.children.is_none()),
-        level: branch.level as u16,
-        children: branch.children.map_or([0; 2], |c| c.map(|c| c as u32)),
-        first_triangle: branch.first as u32,
-        triangles: branch.count as u32,
-        ..bytemuck::Zeroable::zeroed()
-    }
-}
-
-/// Exact: the scale is a power of two.
-fn set_grid(node: &mut Node, grid: &Grid, scale: f64) {
-    node.origin = (grid.origin / scale).as_vec3().to_array();
-    node.voxel = (grid.voxel / scale) as f32;
-    node.cells = grid.cells;
-    node.across = 2;
-}
-
-fn fit(
-    node: &mut Node,
-    target: &Target<'_>,
-    rays: Rays,
-    seed: u64,
-    triangles: &Ordered<'_>,
-    room: &Room,
-    options: &BuildOptions,
-) -> io::Result<[Vec<u8>; 6]> {
-    let mut lists: [Vec<u8>; 6] = Default::default();
-    let (mut square_error, mut all_samples) = (0.0, 0);
-    let keep = |seen: &Seen, shown: &ShaderFit, samples: usize| {
-        let voxel = shader_fit::fit(seen, shown.shader, options.opacity);
-        let list = voxel.list();
-        voxel.write(&mut lists[list]);
-        node.counts[list] += 1;
-        square_error += shown.square_error;
-        all_samples += samples;
-        node.crossings = node.crossings.saturating_add(seen.crossings);
-    };
-    let admit = |touched: usize| {
-        let rays = match rays {
-            Rays::PerVoxel(_) => (touched as u64 * RAYS_AT_VOXEL).min(u64::from(MOST_RAYS)),
-            Rays::InAll(rays) => u64::from(rays),
-        };
-        room.take(rays * RAY_BYTES)
-    };
-    let sampled = target.sample(rays, MOST_RAYS, seed, triangles, admit, keep)?;
-    node.touched = sampled.touched;
-    node.untested = sampled.untested;
-    node.rays = sampled.rays;
-    node.hits = sampled.hits;
-    let mean = square_error / f64::from(all_samples.max(1) as u32);
-    node.error = libm::sqrt(mean) as f32;
-    Ok(lists)
-}
-
-/// With `textures`, or else with the textures' colours at the corners.
-fn leaf_triangles(
-    surface: &dyn Surface,
-    order: &[u32],
-    centre: DVec3,
-    textures: Option<&Textures>,
-) -> Vec<LeafTriangle> {
-    let leaf = |&number: &u32| {
-        let triangle = surface.triangle(number as usize);
-        let (paint, colors) = match textures {
-            Some(textures) => textures.paint(&triangle),
-            None => (Paint::NONE, triangle.corner_colors()),
-        };
-        LeafTriangle {
-            corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),
-            normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
-            colors: colors.map(to_srgb),
-            paint,
-        }
-    };
-    order.iter().map(leaf).collect()
 }
 
 fn assemble<F: Read + Write + Seek>(

@@ -69,8 +69,14 @@ impl Around {
         enter <= leave * MARGIN
     }
 
+    pub(super) fn touches(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    }
+
+    /// The square of the distance from the other's middle.
     pub(super) fn square_from(&self, other: &Self) -> f32 {
-        let apart = (self.low - other.high).max(other.low - self.high);
+        let middle = (other.low + other.high) * 0.5;
+        let apart = (self.low - middle).max(middle - self.high);
         apart.max(Vec3A::ZERO).length_squared()
     }
 }

@@ -4,8 +4,8 @@ use std::io;
 
 use glam::DVec3;
 
-use super::Ordered;
 use super::count::{FOLLOWED, Groups, Layer, Marks, Probes, Seen, main_normal};
+use super::ordered::Ordered;
 use super::shader_fit::{ShaderFit, fit_shader};
 use super::shot::{Aim, NOWHERE, Shot, Target};
 use super::touch::{POINTS, Touched, touched};
@@ -74,47 +74,28 @@ impl Target<'_> {
             followed: vec![0; touched.len()],
         };
         found.find_visible(self, &mut chance)?;
-        let visibility_rays = found.shots.len();
-        let aims = (0..touched.len() as u32).filter(|&number| found.is_seen[number as usize]);
-        let aims: Vec<u32> = aims.collect();
-        let left = most - visibility_rays as u32;
-        let mut aimed = vec![0; touched.len()];
-        let mut prober = Prober {
-            target: self,
-            aims: &aims,
-            directions: aims.iter().map(|_| Directions::new(&mut chance)).collect(),
-            chance: &mut chance,
-        };
-        match rays {
-            Rays::PerVoxel(probes) => {
-                let first = FIRST_PROBES.min(probes);
-                prober.probe(|_| first, left, &mut aimed, &mut found)?;
-                let probed = &found.shots[visibility_rays..];
-                let crossings = self.crossings(probed, &slot, touched.len());
-                let shot = probed.len() as u32;
-                let wanted = |number: usize| {
-                    let needed = (probes * first).div_ceil(crossings[number].max(1));
-                    needed.clamp(LEAST_PROBES.min(probes), probes)
-                };
-                prober.probe(wanted, left - shot, &mut aimed, &mut found)?;
-            }
-            Rays::InAll(rays) => {
-                let probes = left.min(rays.saturating_sub(visibility_rays as u32));
-                prober.probe(|_| u32::MAX, probes, &mut aimed, &mut found)?;
-            }
-        }
-        let Found {
-            shots,
-            is_seen,
-            tests,
-            ..
-        } = found;
-        let is_untested = |number: usize| !is_seen[number] && tests[number] < LEAST_TESTS;
+        let first_probe = found.shots.len();
+        let aimed = found.probe(self, rays, most, &mut chance)?;
+        Ok(self.fit(&found, first_probe, &aimed, triangles, &mut keep))
+    }
+
+    /// `found`: all rays, of which the first are no probes. `aimed`: the number of probes by touched voxel.
+    fn fit(
+        &self,
+        found: &Found<'_>,
+        first_probe: usize,
+        aimed: &[u32],
+        triangles: &Ordered<'_>,
+        keep: &mut dyn FnMut(&Seen, &ShaderFit, usize),
+    ) -> Sampled {
+        let Found { touched, shots, .. } = found;
+        let is_seen = |number: usize| found.is_seen[number];
+        let is_untested = |number: usize| !is_seen(number) && found.tests[number] < LEAST_TESTS;
         let mut kept = vec![NOWHERE; touched.len()];
         let mut aimed_of_grid = vec![0u8; self.grid.len()];
         let mut count = 0;
         for (number, voxel) in touched.iter().enumerate() {
-            if is_seen[number] || is_untested(number) {
+            if is_seen(number) || is_untested(number) {
                 kept[number] = count as u32;
                 count += 1;
                 let probes = aimed[number].min(u32::from(u8::MAX) - 1) as u8;
@@ -122,12 +103,12 @@ impl Target<'_> {
             }
         }
         let marks = Marks {
-            slot: &slot,
+            slot: found.slot,
             kept: &kept,
             aimed: &aimed_of_grid,
         };
-        let probes = Probes::new(self, &shots[visibility_rays..], &marks, count);
-        let ends = (0u32..).zip(&shots);
+        let probes = Probes::new(self, &shots[first_probe..], &marks, count);
+        let ends = (0u32..).zip(shots);
         let ends = ends.filter(|(_, shot)| shot.touched != NOWHERE);
         let ends = ends.map(|(number, shot)| (kept[shot.touched as usize], number));
         let ends: Vec<(u32, u32)> = ends.collect();
@@ -174,12 +155,12 @@ impl Target<'_> {
             probes.count(number as u32, place, &fit.shader, &layer, &mut seen);
             keep(&seen, &fit, samples.len());
         }
-        Ok(Sampled {
+        Sampled {
             touched: touched.len() as u32,
             untested,
             rays: shots.len() as u32,
             hits,
-        })
+        }
     }
 
     fn crossings(&self, probes: &[Shot], slot: &[u32], touched: usize) -> Vec<u32> {
@@ -285,6 +266,46 @@ impl Found<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Shoots probes, together with the rays before at most `most`. Returns their number by touched voxel.
+    fn probe(
+        &mut self,
+        target: &Target<'_>,
+        rays: Rays,
+        most: u32,
+        chance: &mut SplitMix,
+    ) -> io::Result<Vec<u32>> {
+        let begin = self.shots.len();
+        let aims = (0..self.touched.len() as u32).filter(|&number| self.is_seen[number as usize]);
+        let aims: Vec<u32> = aims.collect();
+        let left = most - begin as u32;
+        let mut aimed = vec![0; self.touched.len()];
+        let mut prober = Prober {
+            target,
+            aims: &aims,
+            directions: aims.iter().map(|_| Directions::new(chance)).collect(),
+            chance,
+        };
+        match rays {
+            Rays::PerVoxel(probes) => {
+                let first = FIRST_PROBES.min(probes);
+                prober.probe(|_| first, left, &mut aimed, self)?;
+                let probed = &self.shots[begin..];
+                let crossings = target.crossings(probed, self.slot, self.touched.len());
+                let shot = probed.len() as u32;
+                let wanted = |number: usize| {
+                    let needed = (probes * first).div_ceil(crossings[number].max(1));
+                    needed.clamp(LEAST_PROBES.min(probes), probes)
+                };
+                prober.probe(wanted, left - shot, &mut aimed, self)?;
+            }
+            Rays::InAll(rays) => {
+                let probes = left.min(rays.saturating_sub(begin as u32));
+                prober.probe(|_| u32::MAX, probes, &mut aimed, self)?;
+            }
+        }
+        Ok(aimed)
     }
 
     /// Returns the voxels newly seen, and along which direction.

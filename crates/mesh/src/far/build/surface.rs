@@ -5,10 +5,11 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::compare::{ACROSS, Candidate, Comparison, Judged};
+use super::node::leaf_triangles;
 use super::parts::Parts;
 use super::split::Branch;
 use super::spool::Made;
-use super::{BuildError, BuildOptions, leaf_triangles};
+use super::{BuildError, BuildOptions};
 use crate::decimate::{DecimateError, Decimation, decimate_between};
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
