@@ -72,8 +72,11 @@ pub(super) fn jobs(
     outputs::check_picture_name(&pattern)?;
     let pattern = outputs::check_text(&pattern)?;
     if all.len() > 1 && !pattern.contains("{stem}") {
-        let all = all.len();
-        let message = format!("{pattern}: {all} scenes would be written to one file");
+        let names = match &all[..] {
+            [one, other] => format!("{one} and {other}"),
+            _ => format!("{} scenes", all.len()),
+        };
+        let message = format!("{pattern}: {names} would be written to one file");
         let advice = "name a folder with -o FOLDER/, or put {stem} into the name";
         return Err(CliError::usage(message).advise(advice));
     }

@@ -258,6 +258,9 @@ impl From<OpenError> for CliError {
             {
                 failure.advise("only render takes a folder, and draws all scenes in it")
             }
+            OpenError::Scene(SceneError::Io { file, .. }) if file.parse::<f64>().is_ok() => {
+                failure.advise("a height of --ortho needs a sign between: --ortho=HEIGHT")
+            }
             OpenError::Scene(SceneError::Io { .. }) => {
                 failure.advise("scenes are files or generators such as gen:terrain,depth=10,seed=1")
             }
