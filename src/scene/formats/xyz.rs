@@ -33,9 +33,12 @@ pub(super) fn read(
             let expected = "commas, semicolons or spaces between numbers";
             return Err(Fault::new(part().0, begin, expected, printable(&line), advice).into());
         }
+        let fault_of = |expected: String, found: &[u8], advice: &'static str| {
+            Fault::new(part().0, begin, expected, printable(found), advice)
+        };
         let fault = |expected: String, found: &[u8]| {
             let advice = "every line needs the same columns; export the points again";
-            Fault::new(part().0, begin, expected, printable(found), advice)
+            fault_of(expected, found, advice)
         };
         numbers.clear();
         for word in words {
@@ -50,7 +53,11 @@ pub(super) fn read(
         let mut color = DEFAULT_COLOR;
         for (k, at) in (colors.unwrap_or(columns)..columns).take(3).enumerate() {
             let byte = numbers[at].whole().and_then(|n| u8::try_from(n).ok());
-            color[k] = byte.ok_or_else(|| fault("colours from 0 to 255".to_owned(), &line))?;
+            color[k] = byte.ok_or_else(|| {
+                let expected = "colours from 0 to 255, as in the first line".to_owned();
+                let advice = "if these are no colours, such as normals, leave the columns out";
+                fault_of(expected, &line, advice)
+            })?;
         }
         let position = [numbers[0], numbers[1], numbers[2]];
         cloud.point(position, color, None, |_| part(), emitter)?;

@@ -103,6 +103,35 @@ fn a_thin_layer_before_a_surface_covers_its_share_of_it() {
     }
 }
 
+/// Both sides of a card are at one place, and each has its colour.
+#[test]
+fn cards_show_the_side_towards_the_eye() {
+    let mut builder = MeshBuilder::new();
+    let [red, blue] =
+        [[255, 0, 0], [0, 0, 255]].map(|c| builder.material(Material::of_srgb("", c)));
+    for card in 0..900u16 {
+        let [x, y] = [card % 30, card / 30].map(f32::from);
+        let corners = [[0.0, 0.0], [0.9, 0.0], [0.9, 0.9], [0.0, 0.9]];
+        let [a, b, c, d] = corners.map(|[a, b]| [x + a, y + b, 0.0]);
+        quad(&mut builder, [a, b, c, d], red);
+        quad(&mut builder, [d, c, b, a], blue);
+    }
+    let mesh = builder.finish("cards").unwrap();
+    let file = file_of(&build(&mesh, &BuildOptions::default(), &Silent).unwrap());
+    for (z, shown, hidden) in [(1.0, 0, 2), (-1.0, 2, 0)] {
+        let view = around(&mesh, DVec3::new(0.2, 0.3, z), 2.0, 60);
+        let (drawn, counts) = draw(&file, &view, &OPTIONS);
+        assert_eq!(counts.leaves, 0);
+        let sum = |c: usize| drawn.rgba.iter().map(|p| u32::from(p[c])).sum::<u32>();
+        assert!(
+            20 * sum(hidden) < sum(shown),
+            "{z}: {} {}",
+            sum(hidden),
+            sum(shown)
+        );
+    }
+}
+
 /// Two spheres in one place, and a speck that is too small for numbers of single precision: its node has voxels.
 #[test]
 fn coincident_spheres_are_built_and_what_is_not_decimated_has_voxels() {

@@ -1,4 +1,5 @@
-//! The first triangle on each ray; of equally near ones the lowest number.
+//! The first triangle on each ray. Of equally near ones it is one towards the ray, and of these the one with the lowest
+//! number.
 
 use std::io::{self, Read};
 
@@ -12,6 +13,8 @@ use super::shot::NOWHERE;
 /// Share of an edge by which triangles reach beyond it, so that no ray slips between two.
 const EDGE: f32 = 1e-5;
 const MARGIN: f32 = 1.0 + 1e-3;
+/// Faces of both sides of a card are equally near, as far as roundings let them.
+const EQUAL: f32 = 1.0 + 1e-5;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Query {
@@ -34,13 +37,25 @@ pub(super) struct Meeting {
     pub(super) distance: f32,
     /// In the order of the hierarchy, or [`NOWHERE`].
     pub(super) triangle: u32,
+    is_towards: bool,
 }
 
 impl Meeting {
     pub(super) const NONE: Self = Self {
         distance: f32::INFINITY,
         triangle: NOWHERE,
+        is_towards: false,
     };
+
+    fn is_before(&self, other: &Self) -> bool {
+        if self.is_towards != other.is_towards {
+            return match self.is_towards {
+                true => self.distance <= other.distance * EQUAL,
+                false => self.distance * EQUAL < other.distance,
+            };
+        }
+        (self.distance, self.triangle) < (other.distance, other.triangle)
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -134,18 +149,23 @@ impl Cluster {
         let most = query.most.min(meeting.distance * MARGIN);
         let ray = query.ray();
         bvh::traverse(&self.nodes, &ray, most, |place| {
-            let distance = meet(&self.triangles[place], &ray);
-            if distance.is_infinite() || distance > meeting.distance.min(query.most) {
+            let (distance, is_towards) = meet(&self.triangles[place], &ray);
+            if distance > query.most.min(meeting.distance * EQUAL) || distance.is_infinite() {
                 return f32::INFINITY;
             }
-            let triangle = first + self.numbers[place];
+            let met = Meeting {
+                distance,
+                triangle: first + self.numbers[place],
+                is_towards,
+            };
+            if !met.is_before(meeting) {
+                return f32::INFINITY;
+            }
             let point = || (query.origin + query.direction * distance).as_dvec3();
-            if stops.is_some_and(|stops| !stops(triangle as usize, point())) {
+            if stops.is_some_and(|stops| !stops(met.triangle as usize, point())) {
                 return f32::INFINITY;
             }
-            if distance < meeting.distance || triangle < meeting.triangle {
-                *meeting = Meeting { distance, triangle };
-            }
+            *meeting = met;
             distance * MARGIN
         });
     }
@@ -177,8 +197,9 @@ pub(super) fn is_any_entered(around: &Around, queries: &[Query], meetings: &[Mee
     both.any(|(query, meeting)| around.is_entered(query, query.most.min(meeting.distance)))
 }
 
-/// Möller and Trumbore's test, from both sides, a little beyond the edges; infinite where they do not meet.
-fn meet(&[corner, to_second, to_third]: &Corners, ray: &Ray) -> f32 {
+/// Möller and Trumbore's test, from both sides, a little beyond the edges; infinite where they do not meet. And whether
+/// the ray comes from the side that sees the corners counter-clockwise.
+fn meet(&[corner, to_second, to_third]: &Corners, ray: &Ray) -> (f32, bool) {
     let [corner, to_second, to_third] = [corner, to_second, to_third].map(Vec3A::from_array);
     let across = ray.direction.cross(to_third);
     let signed = to_second.dot(across);
@@ -190,10 +211,10 @@ fn meet(&[corner, to_second, to_third]: &Corners, ray: &Ray) -> f32 {
     let over = from.cross(to_second);
     let v = ray.direction.dot(over) * sign;
     if scale == 0.0 || u.min(v).min(scale - u - v) < -EDGE * scale {
-        return f32::INFINITY;
+        return (f32::INFINITY, false);
     }
     let t = to_third.dot(over) * sign / scale;
-    if t >= 0.0 { t } else { f32::INFINITY }
+    (if t >= 0.0 { t } else { f32::INFINITY }, signed > 0.0)
 }
 
 #[cfg(test)]
@@ -210,14 +231,18 @@ mod tests {
         let mut nearest = Meeting::NONE;
         for (number, corners) in triangles.iter().enumerate() {
             let [a, b, c] = corners.map(|corner| corner.as_vec3a());
-            let distance = meet(&[a, b - a, c - a].map(|p| p.to_array()), &ray);
+            let (distance, is_towards) = meet(&[a, b - a, c - a].map(|p| p.to_array()), &ray);
             // A ray within a triangle's plane may seem to meet it far away.
             let at = ray.origin + ray.direction * distance;
             let outside = (a.min(b).min(c) - at).max(at - a.max(b).max(c));
             let is_there = outside.max_element() <= 1e-5 * size;
-            if is_there && distance < nearest.distance && distance <= query.most {
-                let triangle = number as u32;
-                nearest = Meeting { distance, triangle };
+            let met = Meeting {
+                distance,
+                triangle: number as u32,
+                is_towards,
+            };
+            if is_there && distance <= query.most && met.is_before(&nearest) {
+                nearest = met;
             }
         }
         nearest

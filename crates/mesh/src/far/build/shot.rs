@@ -93,8 +93,8 @@ impl Target<'_> {
         shots: &mut Vec<Shot>,
     ) -> io::Result<()> {
         let cells = point(self.grid.cells);
-        // From S to behind the aims.
-        let reach = DVec3::splat(self.distance.max(beyond) + 1.0);
+        // From S, or up to a voxel before it, to behind the aims.
+        let reach = DVec3::splat(self.distance.max(beyond) + 2.0);
         let around = Around::of(self.grid.world(-reach), self.grid.world(cells + reach));
         let (mut queries, mut meetings) = (Vec::new(), Vec::new());
         for batch in aims.chunks(BATCH) {
