@@ -30,7 +30,7 @@ pub(super) const MOST_RAYS: u32 = 1 << 22;
 const RAY_BYTES: u64 = 160;
 const RAYS_AT_VOXEL: u64 = 32;
 
-/// What nodes are made of.
+/// Makes nodes.
 pub(super) struct Maker<'m> {
     pub(super) options: &'m BuildOptions,
     pub(super) triangles: &'m Ordered<'m>,
