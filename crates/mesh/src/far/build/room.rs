@@ -7,7 +7,7 @@ use super::clusters::{CLUSTER, MADE, MAKING};
 
 /// Most bytes per triangle while the parts of a hybrid are found.
 const PARTS_BYTES: u64 = 160;
-const LEAST_ROOM: u64 = 48 << 20;
+const LEAST_ROOM: u64 = 44 << 20;
 
 pub(super) struct Shares {
     pub(super) clusters: Option<u64>,
