@@ -105,6 +105,10 @@ fn text_of_points_with_colours_and_other_columns() {
             "1 2 3 1 2 3\n1 2 3 1 2 256\n",
             "line 2 at byte 12: expected colours from 0 to 255",
         ),
+        (
+            "1 2 3 0 0 1\n4 5 6 0 0 -1\n",
+            "such as normals, leave the columns out",
+        ),
         ("1 2 3.5\n", "line 1 at byte 0: expected a whole number"),
         ("1 2\n", "not a known scene file"),
     ] {

@@ -33,12 +33,9 @@ pub(super) fn read(
             let expected = "commas, semicolons or spaces between numbers";
             return Err(Fault::new(part().0, begin, expected, printable(&line), advice).into());
         }
-        let fault_of = |expected: String, found: &[u8], advice: &'static str| {
-            Fault::new(part().0, begin, expected, printable(found), advice)
-        };
         let fault = |expected: String, found: &[u8]| {
             let advice = "every line needs the same columns; export the points again";
-            fault_of(expected, found, advice)
+            Fault::new(part().0, begin, expected, printable(found), advice)
         };
         numbers.clear();
         for word in words {
@@ -56,7 +53,7 @@ pub(super) fn read(
             color[k] = byte.ok_or_else(|| {
                 let expected = "colours from 0 to 255, as in the first line".to_owned();
                 let advice = "if these are no colours, such as normals, leave the columns out";
-                fault_of(expected, &line, advice)
+                Fault::new(part().0, begin, expected, printable(&line), advice)
             })?;
         }
         let position = [numbers[0], numbers[1], numbers[2]];

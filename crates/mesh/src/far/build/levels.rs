@@ -1,4 +1,4 @@
-//! Coarser nodes above the root, and the choice of nodes that have voxels (`spec/far.md`, Grid).
+//! Coarser nodes above the root, the choice of nodes that have voxels, and their rays (`spec/far.md`, Grid).
 
 use rayon::prelude::*;
 
@@ -152,8 +152,4 @@ pub(super) fn put_above(branches: &mut Vec<Branch>, grid: u32) -> usize {
     }
     branches.splice(0..0, coarser);
     count as usize
-}
-
-pub(super) fn grid_of(number: usize, coarser: usize, grid: u32) -> u32 {
-    grid >> coarser.saturating_sub(number)
 }

@@ -238,10 +238,10 @@ fn fill<F: Read + Write + Seek + Send>(
     let fewest = options.leaf_triangles as usize;
     let (mut branches, order) = split(surface.len(), corners, fewest);
     let coarser = levels::put_above(&mut branches, options.grid);
+    progress.end();
     if u32::try_from(branches.len()).is_err() {
         return Err(BuildError::TooMany(format!("{} nodes", branches.len())));
     }
-    progress.end();
     let triangles = Ordered {
         surface,
         order: &order,

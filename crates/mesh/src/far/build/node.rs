@@ -16,7 +16,7 @@ use super::shot::Target;
 use super::split::Branch;
 use super::spool::Made;
 use super::surface::{MOST_TRIANGLES, Surfaces};
-use super::{BuildError, BuildOptions, failed, levels};
+use super::{BuildError, BuildOptions, failed};
 use crate::Surface;
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
@@ -30,7 +30,7 @@ pub(super) const MOST_RAYS: u32 = 1 << 22;
 const RAY_BYTES: u64 = 160;
 const RAYS_AT_VOXEL: u64 = 32;
 
-/// Makes nodes.
+/// Makes nodes, each from its number alone.
 pub(super) struct Maker<'m> {
     pub(super) options: &'m BuildOptions,
     pub(super) triangles: &'m Ordered<'m>,
@@ -49,8 +49,8 @@ impl Maker<'_> {
     pub(super) fn grid(&self, number: usize, branch: &Branch) -> Grid {
         let low = self.triangles.place(branch.low);
         let high = self.triangles.place(branch.high);
-        let side = levels::grid_of(number, self.coarser, self.options.grid);
-        Grid::around(low, high, side)
+        let halvings = self.coarser.saturating_sub(number);
+        Grid::around(low, high, self.options.grid >> halvings)
     }
 
     /// A leaf's triangles, or voxels if there are rays to make them of.
@@ -66,13 +66,9 @@ impl Maker<'_> {
             let data = match &self.surfaces {
                 Some(surfaces) => surfaces.leaf(&mut node, own),
                 None => {
-                    let Ordered {
-                        surface,
-                        order,
-                        centre,
-                        ..
-                    } = *self.triangles;
-                    let all = leaf_triangles(surface, &order[own], centre, Some(self.textures));
+                    let from = self.triangles;
+                    let order = &from.order[own];
+                    let all = leaf_triangles(from.surface, order, from.centre, Some(self.textures));
                     pack(&Default::default(), &lay_out(&mut node, &all, |_| true))
                 }
             };
