@@ -91,6 +91,8 @@ fn text_of_points_with_colours_and_other_columns() {
     ] {
         assert_eq!(read_plain(text.as_bytes()), expected, "{text}");
     }
+    let (_, info) = read_with(b"1 2 3 0.5 0.5 1\n", &ReadOptions::default()).unwrap();
+    assert!(info.warnings[0].starts_with("columns 4 to 6 are not drawn"));
     check(b"0 -0.25 0.5\n0.74 25.5 -0.5\n", Some(0.5), &VOXELS);
     for (text, part) in [
         (

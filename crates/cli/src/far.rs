@@ -153,8 +153,10 @@ fn check_room(triangles: u64, budget: Option<u64>) -> Result<(), CliError> {
         Some(free) if needed > free => Err(CliError::new(
             Kind::Limit,
             format!(
-                "{triangles} triangles take at least {needed} bytes of memory while far voxels are \
-                 built of them, and {free} are free"
+                "{triangles} triangles take at least {} MiB of memory while far voxels are built of \
+                 them, and {} MiB are free",
+                needed >> 20,
+                free >> 20
             ),
         )
         .advise("build within a budget with --memory, or ask for fewer --instances")),

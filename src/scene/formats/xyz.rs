@@ -63,6 +63,11 @@ pub(super) fn read(
         has_colors: matches!(layout, Some((_, Some(_)))),
         ..SceneInfo::default()
     };
+    if let Some((columns @ 4.., None)) = layout {
+        info.warnings.push(format!(
+            "columns 4 to {columns} are not drawn: colours are three whole numbers from 0 to 255"
+        ));
+    }
     cloud.finish(&mut info)?;
     Ok(info)
 }

@@ -42,7 +42,8 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Proble
         }
         return Ok(());
     }
-    if !is_text_stl(bytes) {
+    // Headers of binary files may begin as texts do, which have no zeros.
+    if !is_text_stl(bytes) || bytes.iter().take(HEADER + TRIANGLE).any(|&byte| byte == 0) {
         return Err(cut_binary(bytes).into());
     }
     // Not as text in whole, which might be a copy.

@@ -35,6 +35,7 @@ STL  | solid a\nfacet x\n                     | triangle 1: expected "facet norm
 STL  | solid a\nendsolid a\nsolid b\nfacet x\n | triangle 1: expected "facet normal
 STL  | solid a\nendsolid a\n                  | at least one triangle
 STL  | 7777777777777777777777777777777777777777777777777777777777777777777777777777777777777 | 46318274834 bytes in all for the 926365495 triangles
+STL  | solid a\0\0\n                           | header at byte 0: expected 84 bytes, found 10 bytes
 STL  | 77777777777777777777                   | header at byte 0: expected 84 bytes, found 20 bytes; the file is cut short or damaged
 gltf | /asset/version: "1.0"                  | asset: expected version 2, found 1.0
 gltf | /accessors/0/count: 400000000000       | accessor 0: expected 400000000000 elements of 12 bytes
@@ -61,7 +62,7 @@ GLB  | glTFxx                                 | header at byte 0: expected 12 by
 "#;
 
 fn file(kind: &str, content: &str) -> (MeshFormat, Vec<u8>) {
-    let text = content.replace("\\n", "\n");
+    let text = content.replace("\\n", "\n").replace("\\0", "\0");
     match kind {
         "obj" => (Obj, ["v 0 0 0\nv 1 0 0\nv 1 1 0\n", &text].concat().into()),
         "ply" => {

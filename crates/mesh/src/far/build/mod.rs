@@ -106,7 +106,9 @@ pub enum BuildError {
     )]
     FarAway { extent: f64, distance: f64 },
     #[error(
-        "the build takes {needed} bytes at the least beside what is loaded, and {given} are left"
+        "the build takes {}M at the least beside what is loaded, and {}M are left",
+        needed.div_ceil(1 << 20),
+        given >> 20
     )]
     Memory { needed: u64, given: u64 },
     /// A temporary or unfinished file, or its folder.
