@@ -194,7 +194,7 @@ exit_codes! {
         BenchError::Engine { who, source } => return Self::from(source).at(who),
         BenchError::Setup(error) => return error.into(),
         BenchError::Resolve(error) => return error.into(),
-        BenchError::Picture(_) | BenchError::Threads { .. } => Kind::Run,
+        BenchError::Picture(_) => Kind::Run,
     }
     MethodError {
         MethodError::Far(error) => return error.into(),

@@ -82,8 +82,7 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliErro
         let open = |name: &String| subjects::open(name, &camera, &scene, (64, 64), console);
         let subjects: Vec<Subject> = run.scenes.iter().map(open).collect::<Result<_, _>>()?;
         let families = engines::families(&run.engines, &run.variants)?;
-        let reference = &engines::REFERENCE;
-        let measured = reproduce::rows(run, &subjects, &families, reference, &mut harness);
+        let measured = reproduce::rows(run, &subjects, &families, &mut harness);
         rows.extend(measured?);
     }
     let tables = rows.chunk_by(|a, b| a.get("table") == b.get("table"));

@@ -5,7 +5,7 @@ use hwmodel::Overflow;
 use serde::Deserialize;
 
 use crate::bench::{
-    BenchError, Candidate, EVERYTHING_ON, Family, Harness, PowerLaw, Subject, TimePlan, measure,
+    BenchError, EVERYTHING_ON, Family, Harness, PowerLaw, Subject, TimePlan, measure,
 };
 use crate::model::frame::count_operations;
 use crate::report::plot::{Chart, RowPlot, Series};
@@ -84,7 +84,6 @@ pub fn rows(
     run: &Run,
     subjects: &[Subject],
     families: &[Family],
-    reference: &Candidate,
     harness: &mut Harness<'_>,
 ) -> Result<Vec<Row>, BenchError> {
     let sizes: Vec<(u32, u32)> = run.sizes.iter().map(|&side| (side, side)).collect();
@@ -93,7 +92,6 @@ pub fn rows(
         threads: &[1],
         options: run.settings.options(),
         families,
-        reference,
     };
     let mut rows = measure(subjects, &plan, harness)?;
     let settings = match run.settings {

@@ -9,9 +9,7 @@ use crate::error::{CliError, Kind};
 use crate::{engines, scenes};
 use shiftvox::drawing::milliseconds_since;
 use shiftvox::graph::Graph;
-use shiftvox_lab::quality::{
-    Method, PixelStyle, Triangles, far, hybrid, textured, triangles, voxel_method,
-};
+use shiftvox_lab::quality::{Method, Triangles, far, hybrid, textured, triangles, voxel_method};
 use shiftvox_mesh::Mesh;
 use shiftvox_mesh::decimate::{Decimation, compact, decimate};
 use shiftvox_mesh::far::store::encode;
@@ -133,14 +131,10 @@ impl Made {
     }
 
     /// The methods, except those of empty decimated meshes.
-    pub(super) fn methods<'m>(
-        &'m self,
-        choices: &[Choice],
-        style: PixelStyle,
-    ) -> Result<Vec<Method<'m>>, CliError> {
+    pub(super) fn methods<'m>(&'m self, choices: &[Choice]) -> Result<Vec<Method<'m>>, CliError> {
         let mut all = Vec::new();
         for choice in choices {
-            let method = self.method(choice, style);
+            let method = self.method(choice);
             all.extend(method.map_err(|e| CliError::new(Kind::Run, e))?);
         }
         Ok(all)
@@ -149,7 +143,6 @@ impl Made {
     fn method<'m>(
         &'m self,
         choice: &Choice,
-        style: PixelStyle,
     ) -> Result<Option<Method<'m>>, shiftvox_lab::quality::Refused> {
         fn file<T>(slot: &Option<Timed<T>>) -> Option<(&T, f64)> {
             slot.as_ref().map(|(file, ms)| (file, *ms))
@@ -164,7 +157,7 @@ impl Made {
                     false => engines::FAST.make,
                 };
                 graph.map(|(graph, ms)| {
-                    let mut method = voxel_method(graph, (engine, make), options, style);
+                    let mut method = voxel_method(graph, (engine, make), options);
                     method.build_ms = self.mesh.is_some().then_some(ms);
                     method
                 })
@@ -181,7 +174,7 @@ impl Made {
                     bytes,
                     build_ms,
                 });
-                of.map(|of| triangles(of, aa_log2, style)).transpose()?
+                of.map(|of| triangles(of, aa_log2)).transpose()?
             }
             Choice::Far {
                 is_hybrid,
@@ -189,8 +182,8 @@ impl Made {
                 voxel_px,
                 aa_log2,
             } => file(&self.far[usize::from(is_hybrid)]).map(|of| match is_hybrid {
-                true => hybrid(of, voxel_px, aa_log2, style),
-                false => far(of, opacity, voxel_px, aa_log2, style),
+                true => hybrid(of, voxel_px, aa_log2),
+                false => far(of, opacity, voxel_px, aa_log2),
             }),
             Choice::Textured { level, aa_log2 } => {
                 file(&self.textured[usize::from(level.is_none())]).map(|of| {
@@ -201,7 +194,7 @@ impl Made {
                             cells: Some(of.0.grid(0).cell_grid().cells),
                         },
                     };
-                    textured(of, erosion, aa_log2, style)
+                    textured(of, erosion, aa_log2)
                 })
             }
         })

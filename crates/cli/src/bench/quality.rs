@@ -14,9 +14,7 @@ use crate::experiment::subjects;
 use crate::scenes;
 use shiftvox::project::{Bounds, Camera, SetupOptions, Up};
 use shiftvox_lab::bench::Schedule;
-use shiftvox_lab::quality::{
-    Motion, PixelStyle, QualityPlan, Scene, at_distance, charts, measure, table,
-};
+use shiftvox_lab::quality::{Motion, QualityPlan, Scene, at_distance, charts, measure, table};
 use shiftvox_lab::report::Row;
 use shiftvox_mesh::{Surface, mesh_box};
 
@@ -136,12 +134,11 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
         motions: args.motions(),
         frames: args.frames,
         strata_log2: samples.ilog2(),
-        style: PixelStyle::default(),
     };
     let mut rows: Vec<Row> = Vec::new();
     for name in &names {
         let (made, choices, camera) = args.open(name, size.pair(), console)?;
-        let methods = made.methods(&choices, plan.style)?;
+        let methods = made.methods(&choices)?;
         let mut cameras = vec![camera];
         if !args.heights.is_empty() {
             let heights = args.heights.iter();

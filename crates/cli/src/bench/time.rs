@@ -115,7 +115,6 @@ pub(super) fn run(args: &TimeArgs, threads: &[usize], console: &Console) -> Resu
         threads,
         options,
         families: &families,
-        reference: &engines::REFERENCE,
     };
     let mut harness = Harness::new(schedule, console.progress());
     let mut groups: Vec<(String, Vec<Row>)> = Vec::new();

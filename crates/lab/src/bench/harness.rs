@@ -112,10 +112,7 @@ pub(crate) fn interleave<E>(
 
 pub(crate) fn pool(threads: usize) -> Result<ThreadPool, BenchError> {
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map_err(|e| BenchError::Threads {
-        threads,
-        reason: e.to_string(),
-    })
+    pool.map_err(|e| BenchError::Picture(format!("cannot start {threads} threads: {e}")))
 }
 
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -128,8 +125,13 @@ pub enum BenchError {
     Resolve(#[from] ResolveError),
     #[error("{0}")]
     Picture(String),
-    #[error("cannot start {threads} threads: {reason}")]
-    Threads { threads: usize, reason: String },
+}
+
+impl BenchError {
+    pub(crate) fn of_exact_rays(source: EngineError) -> Self {
+        let who = "exact rays".to_owned();
+        Self::Engine { who, source }
+    }
 }
 
 /// A picture whose memory is touched before the first frame.

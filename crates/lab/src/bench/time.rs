@@ -6,9 +6,9 @@ use super::candidate::{Candidate, Family};
 use super::harness::{BenchError, Contender, Harness};
 use super::power_law::PowerLaw;
 use crate::measure::{CoverageError, count_differing};
+use crate::model::frame;
 use crate::report::plot::{Chart, RowPlot};
 use crate::report::{Cell, Row, Table};
-use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
 use shiftvox::project::{Camera, FrameSetup, SetupOptions};
 
@@ -44,8 +44,6 @@ pub struct TimePlan<'p> {
     pub threads: &'p [usize],
     pub options: SetupOptions,
     pub families: &'p [Family],
-    /// The engine whose picture is exact.
-    pub reference: &'p Candidate,
 }
 
 /// Measures all contenders on all subjects in one race: a row for each. If sizes or subjects vary,
@@ -63,7 +61,8 @@ pub fn measure(
     for subject in subjects {
         for &size in plan.sizes {
             let setup = subject.setup(size, &plan.options)?;
-            exact.push(picture_of(plan.reference, &subject.graph, &setup)?);
+            let frame = frame::exact(&subject.graph.view(), &setup);
+            exact.push(frame.map_err(BenchError::of_exact_rays)?.voxel);
             for family in plan.families {
                 let one = [1];
                 let threads = match family.whole.parallel {
@@ -169,21 +168,6 @@ fn head(
     row.put("contender", contender);
     row.put("work_unit", whole.work);
     row
-}
-
-fn picture_of(
-    candidate: &Candidate,
-    graph: &Graph,
-    setup: &FrameSetup,
-) -> Result<Vec<[i32; 4]>, BenchError> {
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let mut engine = (candidate.make)(rayon::current_num_threads());
-    let drawn = engine.render(&graph.view(), setup, &mut frame);
-    drawn.map_err(|source| BenchError::Engine {
-        who: candidate.name.to_owned(),
-        source,
-    })?;
-    Ok(frame.voxel)
 }
 
 /// Fits time and work of each contender to powers of `growing`.

@@ -130,20 +130,16 @@ mod tests {
     use super::*;
 
     use crate::measure::CoverageError;
+    use crate::model::frame::reference;
     use crate::rival::views;
     use shiftvox::frame::NO_NODE;
-    use shiftvox::rays::Rays as Oracle;
 
     #[test]
     fn it_sees_what_the_oracle_sees() {
         for (name, graph, setup) in views() {
-            let mut exact = Frame::new(setup.width, setup.height, false);
-            let mut plain = exact.clone();
             // It has no level of detail.
-            let whole = setup.without_detail();
-            Oracle::default()
-                .render(&graph.view(), &whole, &mut exact)
-                .unwrap();
+            let exact = reference(&graph.view(), &setup).unwrap();
+            let mut plain = Frame::new(setup.width, setup.height, false);
             let stats = FloatRays.render(&graph.view(), &setup, &mut plain).unwrap();
             let error = CoverageError::between(&plain.voxel, &exact.voxel);
             let is_near = error.covered > 0 && error.differing() * 5000 <= error.pixels;

@@ -15,7 +15,7 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::{Machine, MachineOptions, Simulated, narrowed};
 use shiftvox::picture::{Shading, lights};
-use shiftvox::project::{Camera, Engine, EngineError, FrameSetup, SetupOptions, Stats};
+use shiftvox::project::{Camera, Engine, EngineError, FrameSetup, SetupError, SetupOptions, Stats};
 use shiftvox::rays::Rays;
 
 #[derive(Debug)]
@@ -138,23 +138,23 @@ pub(super) fn with_records(
     hardware
 }
 
-/// The view against which errors are measured: 64 bits, the exact rule.
-pub fn true_setup(
-    graph: &Graph,
-    camera: &Camera,
-    base: &SetupOptions,
-) -> Result<FrameSetup, ModelError> {
+/// The view against which errors are measured, whatever the format of what is measured: 64 bits, the exact rule.
+pub fn exact_setup(graph: &Graph, camera: &Camera, aa_log2: u32) -> Result<FrameSetup, SetupError> {
     let options = SetupOptions {
-        aa_log2: base.aa_log2,
+        aa_log2,
         ..SetupOptions::default()
     };
-    let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
-    Ok(setup)
+    FrameSetup::new(camera, &graph.placement, graph.depth, &options)
 }
 
 /// The exact picture of a frame's view, down to the finest voxels.
 pub fn reference(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Frame, EngineError> {
+    exact(graph, &setup.without_detail())
+}
+
+/// The exact picture of a frame's view.
+pub fn exact(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Frame, EngineError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    Rays::default().render(graph, &setup.without_detail(), &mut frame)?;
+    Rays::default().render(graph, setup, &mut frame)?;
     Ok(frame)
 }

@@ -1,11 +1,10 @@
 //! The methods of meshes: triangles, decimated or not, far voxels, textured voxels, and hybrids.
 
 use super::method::{Examined, Method, Refused, Sum, sums};
-use super::voxels::PixelStyle;
 use crate::report::Cell;
 use shiftvox::drawing::Shown;
 use shiftvox::graph::Silent;
-use shiftvox::picture::Background;
+use shiftvox::picture::{Background, Shading};
 use shiftvox::project::Up;
 use shiftvox_mesh::Mesh;
 use shiftvox_mesh::drawing::{
@@ -41,16 +40,12 @@ pub struct Triangles<'m> {
 }
 
 /// Triangles with `4^aa_log2` samples per pixel, in the middles of equal squares.
-pub fn triangles(
-    of: Triangles<'_>,
-    aa_log2: u32,
-    style: PixelStyle,
-) -> Result<Method<'_>, Refused> {
+pub fn triangles(of: Triangles<'_>, aa_log2: u32) -> Result<Method<'_>, Refused> {
     let per_pixel = 1u32 << (2 * aa_log2);
     let style = TrianglesStyle {
         samples: Samples::new(per_pixel, Pattern::Regular).map_err(Refused::because)?,
-        shading: style.shading,
-        background: Background::Color(style.background),
+        shading: Shading::default(),
+        background: Background::default(),
     };
     let (family, name) = match of.one_of {
         1 => ("triangles", "triangles".to_owned()),
@@ -73,12 +68,7 @@ pub fn triangles(
 
 /// A hybrid with voxels of at most so many pixels and `4^aa_log2` samples per pixel, made in so many
 /// milliseconds.
-pub fn hybrid(
-    (file, build_ms): (&FarFile, f64),
-    voxel_px: f64,
-    aa_log2: u32,
-    style: PixelStyle,
-) -> Method<'_> {
+pub fn hybrid((file, build_ms): (&FarFile, f64), voxel_px: f64, aa_log2: u32) -> Method<'_> {
     let mut name = format!("hybrid {}", 1 << (2 * aa_log2));
     if voxel_px != 1.0 {
         name += &format!(" lod {voxel_px}");
@@ -87,7 +77,7 @@ pub fn hybrid(
         family: "hybrid",
         name,
         kind: "hybrid".to_owned(),
-        ..far((file, build_ms), Opacity::Six, voxel_px, aa_log2, style)
+        ..far((file, build_ms), Opacity::Six, voxel_px, aa_log2)
     }
 }
 
@@ -98,7 +88,6 @@ pub fn far(
     opacity: Opacity,
     voxel_px: f64,
     aa_log2: u32,
-    style: PixelStyle,
 ) -> Method<'_> {
     let words = match opacity {
         Opacity::None => "none",
@@ -117,8 +106,8 @@ pub fn far(
         voxel_px,
         aa_log2,
         opacity,
-        shading: style.shading,
-        background: Background::Color(style.background),
+        shading: Shading::default(),
+        background: Background::default(),
     };
     let counters: &[Sum] = &[
         (
@@ -155,7 +144,6 @@ pub fn textured(
     (file, build_ms): (&TexturedFile, f64),
     erosion: Erosion,
     aa_log2: u32,
-    style: PixelStyle,
 ) -> Method<'_> {
     let detail = match erosion {
         Erosion::Auto { .. } => "auto".to_owned(),
@@ -173,8 +161,8 @@ pub fn textured(
     let style = TexturedStyle {
         erosion,
         aa_log2,
-        shading: style.shading,
-        background: Background::Color(style.background),
+        shading: Shading::default(),
+        background: Background::default(),
     };
     let counters: &[Sum] = &[
         ("triangles", &["primitives", "surfels", "surfels"]),

@@ -6,17 +6,15 @@ use super::compare::{add_beaten_by, add_rivals};
 use super::judge::Judge;
 use super::method::{Examined, Method, Refused, drawn};
 use super::motion::Motion;
-use super::reference::{Reference, Sampling, TRIANGLE_SAMPLES, cast, of_triangles};
-use super::voxels::PixelStyle;
+use super::reference::{Reference, TRIANGLE_SAMPLES, cast, of_triangles};
 use crate::bench::{BenchError, Clock, Schedule, interleave, pool};
 use crate::measure::{CoverageError, Light, count_elsewhere, flicker, light_of};
+use crate::model::frame::{exact_setup, reference};
 use crate::report::plot::{Chart, RowPlot};
 use crate::report::{Cell, Row, Table};
-use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress, Silent};
-use shiftvox::picture::{Background, Rows};
-use shiftvox::project::{Camera, Engine, FrameSetup, SetupError, SetupOptions};
-use shiftvox::rays::Rays;
+use shiftvox::picture::{Background, Rows, Shading};
+use shiftvox::project::{Camera, SetupError};
 use shiftvox_mesh::Surface;
 
 #[derive(Debug, Clone)]
@@ -28,7 +26,6 @@ pub struct QualityPlan {
     pub frames: u32,
     /// Strata of a reference's pixel along each axis, as a power of two.
     pub strata_log2: u32,
-    pub style: PixelStyle,
 }
 
 #[derive(Clone, Copy)]
@@ -58,27 +55,16 @@ impl Scene<'_> {
         plan: &QualityPlan,
         progress: &dyn Progress,
     ) -> Result<Reference, BenchError> {
-        let style = plan.style;
         if let Some(mesh) = self.mesh {
-            return of_triangles(mesh, camera, style, seed, progress);
+            return of_triangles(mesh, camera, seed, progress);
         }
         let graph = self
             .graph
             .ok_or_else(|| failed("a scene without voxels and triangles"))?;
-        let sampling = Sampling {
-            strata_log2: plan.strata_log2,
-            seed,
-        };
-        let background = Background::Color(style.background);
-        let setup = truth(graph, camera, 0)?;
-        Ok(cast(
-            graph,
-            &setup,
-            style.shading,
-            background,
-            sampling,
-            progress,
-        ))
+        let (shading, background) = (Shading::default(), Background::default());
+        let setup = exact_setup(graph, camera, 0)?;
+        let sampling = (plan.strata_log2, seed);
+        Ok(cast(graph, &setup, shading, background, sampling, progress))
     }
 
     fn film(
@@ -92,17 +78,6 @@ impl Scene<'_> {
     }
 }
 
-/// The integers that exact rays start from: those of the default format whatever a method has, so
-/// that the view of a narrow format counts as an error.
-fn truth(graph: &Graph, camera: &Camera, aa_log2: u32) -> Result<FrameSetup, SetupError> {
-    let options = SetupOptions {
-        aa_log2,
-        lod_px: 0.0,
-        ..SetupOptions::default()
-    };
-    FrameSetup::new(camera, &graph.placement, graph.depth, &options)
-}
-
 struct Exact<'m> {
     graph: &'m Graph,
     aa_log2: u32,
@@ -111,13 +86,8 @@ struct Exact<'m> {
 
 impl<'m> Exact<'m> {
     fn new(graph: &'m Graph, camera: &Camera, aa_log2: u32) -> Result<Self, BenchError> {
-        let setup = truth(graph, camera, aa_log2)?;
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        let drawn = Rays::default().render(&graph.view(), &setup, &mut frame);
-        drawn.map_err(|source| BenchError::Engine {
-            who: "exact rays".to_owned(),
-            source,
-        })?;
+        let setup = exact_setup(graph, camera, aa_log2)?;
+        let frame = reference(&graph.view(), &setup).map_err(BenchError::of_exact_rays)?;
         Ok(Self {
             graph,
             aa_log2,
@@ -406,6 +376,7 @@ mod tests {
     use super::*;
     use glam::DVec3;
     use shiftvox::machine::Machine;
+    use shiftvox::project::SetupOptions;
     use shiftvox_mesh::open::{OpenOptions, open};
 
     use crate::bench::MakeEngine;
@@ -426,7 +397,6 @@ mod tests {
             motions: Vec::new(),
             frames: 2,
             strata_log2: 1,
-            style: PixelStyle::default(),
         };
         let run = |method: Method<'_>| {
             let scene = Scene {
@@ -438,7 +408,7 @@ mod tests {
             rows.map(|rows| !rows[0].text("refused").is_empty()).ok()
         };
         let make: MakeEngine = |_| Box::new(Machine::default());
-        let method = |options| voxel_method(&graph, ("machine", make), options, plan.style);
+        let method = |options| voxel_method(&graph, ("machine", make), options);
         let wide = SetupOptions::default();
         assert_eq!(run(method(wide)), Some(false));
         // The words do not hold the picture.

@@ -17,4 +17,4 @@ pub use families::{Triangles, far, hybrid, textured, triangles};
 pub use measure::{QualityPlan, Scene, charts, measure, table};
 pub use method::{Method, Refused};
 pub use motion::{Motion, at_distance};
-pub use voxels::{PixelStyle, voxel_method};
+pub use voxels::voxel_method;

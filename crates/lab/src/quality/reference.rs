@@ -2,7 +2,6 @@
 
 use rayon::prelude::*;
 
-use super::voxels::PixelStyle;
 use crate::bench::BenchError;
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::picture::{Background, Shader, Shading};
@@ -12,13 +11,6 @@ use shiftvox::split_mix::mix;
 use shiftvox_mesh::Surface;
 use shiftvox_mesh::drawing::mesh_view::{light_of, view_of};
 use shiftvox_mesh::raster::{self, Pattern, RasterOptions, Samples};
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Sampling {
-    /// Strata of a pixel along each axis, as a power of two, 0..=4; one sample each.
-    pub(super) strata_log2: u32,
-    pub(super) seed: u64,
-}
 
 #[derive(Debug, PartialEq)]
 pub(super) struct Reference {
@@ -35,16 +27,17 @@ const MOST_JITTER_LEVELS: u32 = 4;
 /// `MAX_CASTER_LEVELS - 4` levels.
 ///
 /// Samples are points of a grid up to 256 times as fine as the pixels, so that the exact rays start
-/// from the same integers as the frame. Of each stratum one random grid point is taken.
+/// from the same integers as the frame. A pixel has `2^strata_log2` strata along each axis, 16 at most. Of each one
+/// random grid point is taken.
 pub(super) fn cast(
     graph: &Graph,
     setup: &FrameSetup,
     shading: Shading,
     background: Background,
-    sampling: Sampling,
+    (strata_log2, seed): (u32, u64),
     progress: &dyn Progress,
 ) -> Reference {
-    let strata_log2 = sampling.strata_log2.min(4);
+    let strata_log2 = strata_log2.min(4);
     let spare = MAX_CASTER_LEVELS.saturating_sub(setup.levels + strata_log2);
     let jitter_log2 = spare.min(MOST_JITTER_LEVELS);
     let mut grid = setup.without_detail();
@@ -55,7 +48,7 @@ pub(super) fn cast(
         shader: Shader::new(graph, &grid, shading, background),
         strata_log2,
         jitter_log2,
-        seed: sampling.seed,
+        seed,
     };
     progress.begin("casting the reference", u64::from(setup.height));
     let mut rows = Vec::with_capacity(setup.height as usize);
@@ -83,7 +76,6 @@ pub(super) const TRIANGLE_SAMPLES: u32 = 256;
 pub(super) fn of_triangles(
     surface: &dyn Surface,
     camera: &Camera,
-    style: PixelStyle,
     seed: u64,
     progress: &dyn Progress,
 ) -> Result<Reference, BenchError> {
@@ -92,8 +84,8 @@ pub(super) fn of_triangles(
     let samples = Samples::new(TRIANGLE_SAMPLES, Pattern::Stratified { seed });
     let options = RasterOptions {
         samples: samples.map_err(|e| failed(&e))?,
-        light: light_of(&view, style.shading),
-        background: Some(style.background),
+        light: light_of(&view, Shading::default()),
+        background: Background::default().color(),
     };
     let drawn = raster::draw(surface, &view, &options, progress).map_err(|e| failed(&e))?;
     Ok(Reference {
@@ -179,10 +171,8 @@ mod tests {
     fn shares_are_areas() {
         // From (2.25, 2.25) to (4.75, 4.75): a rim of 3/4 on both sides.
         let cast = |(graph, setup): (Graph, FrameSetup), seed| {
-            let strata_log2 = 4;
-            let sampling = Sampling { strata_log2, seed };
             let black = Background::Color([0; 3]);
-            cast(&graph, &setup, Shading::Flat, black, sampling, &Silent)
+            cast(&graph, &setup, Shading::Flat, black, (4, seed), &Silent)
         };
         let reference = cast(facing(2.25, 2.5), 1);
         for (at, &share) in reference.shares.iter().enumerate() {

@@ -15,25 +15,6 @@ use shiftvox::machine::Machine;
 use shiftvox::picture::{Background, Buffer, Shading};
 use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions, Stats, Up, stat};
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct PixelStyle {
-    pub shading: Shading,
-    pub background: [u8; 3],
-}
-
-impl Default for PixelStyle {
-    fn default() -> Self {
-        let background = match Background::default() {
-            Background::Color(color) => color,
-            Background::None => [0; 3],
-        };
-        Self {
-            shading: Shading::default(),
-            background,
-        }
-    }
-}
-
 /// Bytes per access: child mask and list of a node, its colour and normal, a fill vector (four bits,
 /// a byte here), a pixel's node.
 const NODE_BYTES: u64 = 5;
@@ -48,12 +29,11 @@ pub fn voxel_method<'g>(
     graph: &'g Graph,
     (engine, make): (&'static str, MakeEngine),
     options: SetupOptions,
-    style: PixelStyle,
 ) -> Method<'g> {
     let drawn_as = GraphStyle {
         options,
-        shading: style.shading,
-        background: Background::Color(style.background),
+        shading: Shading::default(),
+        background: Background::default(),
         buffers: vec![Buffer::Voxel],
         is_hashed: false,
     };

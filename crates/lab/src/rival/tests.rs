@@ -6,10 +6,9 @@ use hwmodel::{Memory, OpClass, Stage};
 
 use super::{Cast, RayStage, Rival, cast};
 use crate::measure::CoverageError;
-use shiftvox::frame::Frame;
+use crate::model::frame::reference;
 use shiftvox::graph::{Graph, Silent};
-use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
-use shiftvox::rays::Rays as Oracle;
+use shiftvox::project::{Camera, FrameSetup, SetupOptions};
 use shiftvox_mesh::open::{OpenOptions, open};
 
 /// Eye and target in sides of the object's cube.
@@ -66,11 +65,7 @@ fn it_sees_what_the_oracle_sees() {
         ..Rival::shipped()
     };
     for (name, graph, setup) in views() {
-        let mut exact = Frame::new(setup.width, setup.height, false);
-        let whole = setup.without_detail();
-        Oracle::default()
-            .render(&graph.view(), &whole, &mut exact)
-            .unwrap();
+        let exact = reference(&graph.view(), &setup).unwrap();
         let found = cast_with((&graph, &setup), &rival, "light");
         let error = CoverageError::between(&found.frame.voxel, &exact.voxel);
         // Rays along a boundary: where both sides are as near, either is right.

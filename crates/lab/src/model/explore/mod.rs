@@ -200,7 +200,7 @@ impl<'a> Shared<'a> {
             };
             let options = point.drawing.options(of.options);
             if let Entry::Vacant(place) = shared.exact.entry(size) {
-                let setup = frame::true_setup(of.graph, &camera, of.options)?;
+                let setup = frame::exact_setup(of.graph, &camera, of.options.aa_log2)?;
                 place.insert(frame::reference(&of.graph.view(), &setup)?);
             }
             let setup = || {
