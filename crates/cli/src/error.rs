@@ -16,7 +16,7 @@ use shiftvox::whole::WholeError;
 use shiftvox_lab::bench::BenchError;
 use shiftvox_lab::model::ModelError;
 use shiftvox_lab::model::vectors::VectorsError;
-use shiftvox_mesh::drawing::MethodError;
+use shiftvox_mesh::view_error::ViewError;
 use shiftvox_mesh::{far, textured};
 
 /// Kinds of failure, by exit code.
@@ -170,18 +170,13 @@ exit_codes! {
         textured::BuildError::TooMany(_) => Kind::Limit,
         textured::BuildError::Grid { .. } | textured::BuildError::Grids => Kind::Usage,
     }
-    far::view::ViewError {
-        far::view::ViewError::File(error) => return error.into(),
-        far::view::ViewError::Raster(_) | far::view::ViewError::Samples(_) => Kind::Usage,
-        far::view::ViewError::VoxelSize(_) => Kind::Usage,
-    }
-    textured::view::ViewError {
-        textured::view::ViewError::File(error) => return error.into(),
-        textured::view::ViewError::NoGrid { has, .. } => {
+    ViewError {
+        ViewError::File(error) => return error.into(),
+        ViewError::NoGrid { has, .. } => {
             let has: Vec<String> = has.iter().map(u32::to_string).collect();
             return Self::usage(message).advise(format!("it has grids of {}", has.join(", ")));
         },
-        textured::view::ViewError::Raster(_) | textured::view::ViewError::TexelSize(_) => Kind::Usage,
+        ViewError::Raster(_) | ViewError::VoxelSize(_) | ViewError::TexelSize(_) => Kind::Usage,
     }
     ModelError {
         ModelError::Setup(error) => return error.into(),
@@ -195,12 +190,6 @@ exit_codes! {
         BenchError::Setup(error) => return error.into(),
         BenchError::Resolve(error) => return error.into(),
         BenchError::Picture(_) => Kind::Run,
-    }
-    MethodError {
-        MethodError::Far(error) => return error.into(),
-        MethodError::Textured(error) => return error.into(),
-        MethodError::Samples(_) => Kind::Usage,
-        _ => Kind::Run,
     }
     VectorsError {
         VectorsError::Engine(error) => return error.into(),
@@ -227,7 +216,7 @@ exit_codes! {
         DrawError::Engine(error) => return error.into(),
         DrawError::Resolve(error) => return error.into(),
         DrawError::Camera(_) => Kind::Usage,
-        DrawError::Method(error) => match error.downcast::<MethodError>() {
+        DrawError::Method(error) => match error.downcast::<ViewError>() {
             Ok(error) => return (*error).into(),
             Err(_) => Kind::Run,
         },

@@ -14,7 +14,7 @@ use shiftvox::graph::Crop;
 use shiftvox::picture::Buffer;
 use shiftvox::project::{Camera, Stop};
 use shiftvox::scene::{FileKind, OpenOptions, Source};
-use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
+use shiftvox_mesh::drawing::{FarStyle, TexturedStyle, of_far, of_textured};
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::textured::TexturedFile;
 use shiftvox_mesh::textured::view::Erosion;
@@ -241,7 +241,7 @@ impl Opened {
                     shading,
                     background,
                 };
-                Box::new(FarDrawing::new(file, style))
+                Box::new(of_far(file, style))
             }
             Content::Textured(file) => {
                 let style = TexturedStyle {
@@ -250,7 +250,7 @@ impl Opened {
                     shading,
                     background,
                 };
-                Box::new(TexturedDrawing::new(file, style))
+                Box::new(of_textured(file, style))
             }
         })
     }

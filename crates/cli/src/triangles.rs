@@ -17,7 +17,7 @@ use shiftvox::drawing::{Drawable, milliseconds_since};
 use shiftvox::picture::npy::{self, Array, Values};
 use shiftvox::picture::{Background, Buffer, Shading};
 use shiftvox::whole;
-use shiftvox_mesh::drawing::{TrianglesDrawing, TrianglesStyle};
+use shiftvox_mesh::drawing::{TrianglesStyle, of_triangles};
 use shiftvox_mesh::raster::{Pattern, Samples};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -77,8 +77,8 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
     let (mesh, up) = scenes::open_mesh(&args.mesh, &args.scene, None, console)?;
     let load_ms = milliseconds_since(started);
     let size = args.size.unwrap_or(Size::square(512)).pair();
-    let style = args.style()?;
-    let mut drawing = TrianglesDrawing::new(&mesh, up, style, console.progress());
+    let style = args.style();
+    let mut drawing = of_triangles(&mesh, up, style, console.progress());
     let camera = args.camera.camera(&drawing.bounds(), up, size, 0.0);
     let shown = methods::frame(&mut drawing, &camera, 1);
     let shown = shown.map_err(|error| error.at(args.output.display()))?;
@@ -114,12 +114,12 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
 }
 
 impl TrianglesArgs {
-    fn style(&self) -> Result<TrianglesStyle, CliError> {
-        let samples = self.samples.parse().unwrap_or(16);
-        Ok(TrianglesStyle {
-            samples: Samples::new(samples, Pattern::Regular).map_err(CliError::usage)?,
+    fn style(&self) -> TrianglesStyle {
+        let samples: u32 = self.samples.parse().unwrap_or(16);
+        TrianglesStyle {
+            samples: Samples::new(samples.ilog2() / 2, Pattern::Regular),
             shading: self.shade,
             background: self.background.unwrap_or_default(),
-        })
+        }
     }
 }

@@ -29,6 +29,8 @@ mod texture;
 #[doc(hidden)]
 pub mod textured;
 #[doc(hidden)]
+pub mod view_error;
+#[doc(hidden)]
 pub mod voxelize;
 
 use std::sync::Arc;

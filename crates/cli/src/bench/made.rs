@@ -131,23 +131,15 @@ impl Made {
     }
 
     /// The methods, except those of empty decimated meshes.
-    pub(super) fn methods<'m>(&'m self, choices: &[Choice]) -> Result<Vec<Method<'m>>, CliError> {
-        let mut all = Vec::new();
-        for choice in choices {
-            let method = self.method(choice);
-            all.extend(method.map_err(|e| CliError::new(Kind::Run, e))?);
-        }
-        Ok(all)
+    pub(super) fn methods<'m>(&'m self, choices: &[Choice]) -> Vec<Method<'m>> {
+        choices.iter().filter_map(|of| self.method(of)).collect()
     }
 
-    fn method<'m>(
-        &'m self,
-        choice: &Choice,
-    ) -> Result<Option<Method<'m>>, shiftvox_lab::quality::Refused> {
+    fn method<'m>(&'m self, choice: &Choice) -> Option<Method<'m>> {
         fn file<T>(slot: &Option<Timed<T>>) -> Option<(&T, f64)> {
             slot.as_ref().map(|(file, ms)| (file, *ms))
         }
-        Ok(match *choice {
+        match *choice {
             Choice::Voxels(options, engine) => {
                 let wanted = usize::from(options.coverage.blends());
                 let graph = file(&self.graphs[wanted]);
@@ -174,7 +166,7 @@ impl Made {
                     bytes,
                     build_ms,
                 });
-                of.map(|of| triangles(of, aa_log2)).transpose()?
+                of.map(|of| triangles(of, aa_log2))
             }
             Choice::Far {
                 is_hybrid,
@@ -197,6 +189,6 @@ impl Made {
                     textured(of, erosion, aa_log2)
                 })
             }
-        })
+        }
     }
 }

@@ -138,7 +138,7 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
     let mut rows: Vec<Row> = Vec::new();
     for name in &names {
         let (made, choices, camera) = args.open(name, size.pair(), console)?;
-        let methods = made.methods(&choices)?;
+        let methods = made.methods(&choices);
         let mut cameras = vec![camera];
         if !args.heights.is_empty() {
             let heights = args.heights.iter();

@@ -1,6 +1,6 @@
 //! The methods of meshes: triangles, decimated or not, far voxels, textured voxels, and hybrids.
 
-use super::method::{Examined, Method, Refused, Sum, sums};
+use super::method::{Examined, Method, Sum, sums};
 use crate::report::Cell;
 use shiftvox::drawing::Shown;
 use shiftvox::graph::Silent;
@@ -8,7 +8,7 @@ use shiftvox::picture::{Background, Shading};
 use shiftvox::project::Up;
 use shiftvox_mesh::Mesh;
 use shiftvox_mesh::drawing::{
-    FarDrawing, FarStyle, TexturedDrawing, TexturedStyle, TrianglesDrawing, TrianglesStyle,
+    FarStyle, TexturedStyle, TrianglesStyle, of_far, of_textured, of_triangles,
 };
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::far::view::Opacity;
@@ -40,10 +40,10 @@ pub struct Triangles<'m> {
 }
 
 /// Triangles with `4^aa_log2` samples per pixel, in the middles of equal squares.
-pub fn triangles(of: Triangles<'_>, aa_log2: u32) -> Result<Method<'_>, Refused> {
+pub fn triangles(of: Triangles<'_>, aa_log2: u32) -> Method<'_> {
     let per_pixel = 1u32 << (2 * aa_log2);
     let style = TrianglesStyle {
-        samples: Samples::new(per_pixel, Pattern::Regular).map_err(Refused::because)?,
+        samples: Samples::new(aa_log2, Pattern::Regular),
         shading: Shading::default(),
         background: Background::default(),
     };
@@ -52,7 +52,7 @@ pub fn triangles(of: Triangles<'_>, aa_log2: u32) -> Result<Method<'_>, Refused>
         one_of => ("decimated", format!("decimated 1/{one_of},")),
     };
     let counters: &[Sum] = &[("triangles", &["triangles"]), ("samples", &["samples"])];
-    Ok(Method {
+    Method {
         family,
         name: format!("{name} {per_pixel}"),
         settings: vec![("aa", Cell::Count(1 << aa_log2))],
@@ -61,9 +61,9 @@ pub fn triangles(of: Triangles<'_>, aa_log2: u32) -> Result<Method<'_>, Refused>
         bytes: of.bytes,
         build_ms: Some(of.build_ms),
         // Only fitted cameras use the up axis.
-        drawing: Box::new(move || Box::new(TrianglesDrawing::new(of.mesh, Up::Z, style, &Silent))),
+        drawing: Box::new(move || Box::new(of_triangles(of.mesh, Up::Z, style, &Silent))),
         examine: Box::new(|shown, _| Ok(examined(shown, counters, &[]))),
-    })
+    }
 }
 
 /// A hybrid with voxels of at most so many pixels and `4^aa_log2` samples per pixel, made in so many
@@ -133,7 +133,7 @@ pub fn far(
         graph: None,
         bytes: file.file_bytes(),
         build_ms: Some(build_ms),
-        drawing: Box::new(move || Box::new(FarDrawing::new(file, style))),
+        drawing: Box::new(move || Box::new(of_far(file, style))),
         examine: Box::new(move |shown, _| Ok(examined(shown, counters, solid))),
     }
 }
@@ -180,7 +180,7 @@ pub fn textured(
         graph: None,
         bytes: file.file_bytes(),
         build_ms: Some(build_ms),
-        drawing: Box::new(move || Box::new(TexturedDrawing::new(file, style))),
+        drawing: Box::new(move || Box::new(of_textured(file, style))),
         examine: Box::new(move |shown, _| Ok(examined(shown, counters, &["surfels"]))),
     }
 }

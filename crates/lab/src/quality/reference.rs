@@ -81,9 +81,8 @@ pub(super) fn of_triangles(
 ) -> Result<Reference, BenchError> {
     let failed = |e: &dyn std::fmt::Display| BenchError::Picture(e.to_string());
     let view = view_of(camera, surface.bounds()).map_err(|e| failed(&e))?;
-    let samples = Samples::new(TRIANGLE_SAMPLES, Pattern::Stratified { seed });
     let options = RasterOptions {
-        samples: samples.map_err(|e| failed(&e))?,
+        samples: Samples::new(TRIANGLE_SAMPLES.ilog2() / 2, Pattern::Stratified { seed }),
         light: light_of(&view, Shading::default()),
         background: Background::default().color(),
     };

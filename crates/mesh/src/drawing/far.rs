@@ -3,12 +3,11 @@
 use serde_json::{Value, json};
 
 use super::mesh_view::light_of;
-use super::{Drawn, Method, MethodDrawing, MethodError};
+use super::{Drawn, MeshDrawing};
 use crate::far::FarFile;
 use crate::far::view::{self, FarCounts, Opacity, ViewOptions};
 use crate::raster::RasterCamera;
 use shiftvox::drawing::Figures;
-use shiftvox::graph::MeshBox;
 use shiftvox::picture::{Background, Shading};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,55 +33,23 @@ impl FarStyle {
     }
 }
 
-/// A file of far voxels, and how it is drawn.
-#[derive(Clone)]
-pub struct FarMethod<'f> {
-    file: &'f FarFile,
-    style: FarStyle,
-}
-
-pub type FarDrawing<'f> = MethodDrawing<FarMethod<'f>>;
-
-impl<'f> FarDrawing<'f> {
-    pub fn new(file: &'f FarFile, style: FarStyle) -> Self {
-        Self::of(FarMethod { file, style })
-    }
-}
-
-impl Method for FarMethod<'_> {
-    fn mesh_box(&self) -> MeshBox {
-        self.file.mesh_box()
-    }
-
-    fn aa_log2(&self) -> u32 {
-        self.style.aa_log2
-    }
-
-    fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError> {
-        let options = self.style.options(view);
-        let (drawn, counts) = view::draw(self.file, view, &options)?;
-        let (size, nodes) = ((drawn.width, drawn.height), drawn.node);
-        let (coverage, counters) = (drawn.coverage, counters(&counts));
+pub fn of_far(file: &FarFile, style: FarStyle) -> MeshDrawing<'_> {
+    let draw = move |view: &RasterCamera| {
+        let (drawn, counts) = view::draw(file, view, &style.options(view))?;
+        let details = vec![("engine", json!("far")), ("memory", json!(resident(file)))];
+        // A node's number; where none is seen all bits are set.
         Ok(Drawn::new(
-            size,
-            drawn.rgba,
-            drawn.depth,
-            nodes,
-            coverage,
-            counters,
+            drawn,
+            |node| node as i32,
+            counters(&counts),
+            details,
         ))
-    }
-
-    fn details(&self) -> Figures {
-        vec![
-            ("engine", json!("far")),
-            ("memory", json!(resident(self.file))),
-        ]
-    }
+    };
+    MeshDrawing::new(file.mesh_box(), style.aa_log2, Box::new(draw))
 }
 
 /// The use of a memory budget; `None` without one.
-pub fn resident(file: &FarFile) -> Option<Value> {
+fn resident(file: &FarFile) -> Option<Value> {
     let resident = file.resident()?;
     Some(json!({
         "bytes": resident.bytes,

@@ -14,119 +14,92 @@ use shiftvox::graph::MeshBox;
 use shiftvox::picture::{Picture, Pixels};
 use shiftvox::project::{Bounds, Camera, Up};
 
-use crate::raster::{NO_TRIANGLE, RasterCamera, RasterError, RasterPicture, SamplesError};
+use crate::raster::{RasterCamera, RasterPicture};
+use crate::view_error::ViewError;
 use mesh_view::view_of;
 
-pub use far::{FarDrawing, FarMethod, FarStyle, resident};
-pub use textured::{TexturedDrawing, TexturedMethod, TexturedStyle};
-pub use triangles::{TrianglesDrawing, TrianglesMethod, TrianglesStyle};
-
-/// Why a method of meshes did not draw a frame: the contents of [`DrawError::Method`].
-#[derive(Debug, thiserror::Error)]
-pub enum MethodError {
-    #[error(transparent)]
-    Far(#[from] crate::far::view::ViewError),
-    #[error(transparent)]
-    Textured(#[from] crate::textured::view::ViewError),
-    #[error(transparent)]
-    Raster(#[from] RasterError),
-    #[error(transparent)]
-    Samples(#[from] SamplesError),
-}
-
-impl From<MethodError> for DrawError {
-    fn from(error: MethodError) -> Self {
-        Self::Method(Box::new(error))
-    }
-}
+pub use far::{FarStyle, of_far};
+pub use textured::{TexturedStyle, of_textured};
+pub use triangles::{TrianglesStyle, of_triangles};
 
 /// Least memory of a sample, bytes: colour, depth, and the triangle or node that is seen.
 const MESH_SAMPLE_BYTES: u64 = 8;
 
-pub struct Drawn {
+struct Drawn {
     picture: Picture,
     coverage: Vec<f32>,
     counters: Figures,
+    details: Figures,
 }
 
 impl Drawn {
-    /// A picture without normals and voxels. A node is -1 where nothing is seen.
+    /// A picture without normals and voxels. `node` of what is seen is -1 where nothing is.
     fn new(
-        (width, height): (u32, u32),
-        rgba: Vec<[u8; 4]>,
-        depth: Vec<f32>,
-        node: Vec<i32>,
-        coverage: Vec<f32>,
+        drawn: RasterPicture,
+        node: fn(u32) -> i32,
         counters: Figures,
+        details: Figures,
     ) -> Self {
         let picture = Picture {
-            width,
-            height,
-            normal: vec![[0.0; 3]; rgba.len()],
-            voxel: vec![[0, 0, 0, -1]; rgba.len()],
-            rgba,
-            depth,
-            node,
+            width: drawn.width,
+            height: drawn.height,
+            normal: vec![[0.0; 3]; drawn.rgba.len()],
+            voxel: vec![[0, 0, 0, -1]; drawn.rgba.len()],
+            rgba: drawn.rgba,
+            depth: drawn.depth,
+            node: drawn.seen.into_iter().map(node).collect(),
             records: None,
         };
         Self {
             picture,
-            coverage,
+            coverage: drawn.coverage,
             counters,
+            details,
         }
     }
-
-    fn of_triangles(drawn: RasterPicture, counters: Figures) -> Self {
-        let node = |&triangle: &u32| if triangle == NO_TRIANGLE { -1 } else { 0 };
-        let nodes = drawn.triangle.iter().map(node).collect();
-        let (size, coverage) = ((drawn.width, drawn.height), drawn.coverage);
-        Self::new(size, drawn.rgba, drawn.depth, nodes, coverage, counters)
-    }
 }
 
-pub trait Method: Clone + Send {
-    fn mesh_box(&self) -> MeshBox;
+type Draw<'m> = Box<dyn Fn(&RasterCamera) -> Result<Drawn, ViewError> + Send + Sync + 'm>;
 
+/// A drawing by a method of meshes, from one or several cameras.
+pub struct MeshDrawing<'m> {
+    mesh_box: MeshBox,
     /// Samples per pixel and axis, as a power of two, that take memory at the same time.
-    fn aa_log2(&self) -> u32;
-
-    fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError>;
-
-    fn details(&self) -> Figures;
-}
-
-/// A drawing by a method, from one or several cameras.
-pub struct MethodDrawing<M> {
-    method: M,
+    aa_log2: u32,
+    draw: Draw<'m>,
     kept: Option<(Drawn, Vec<f64>)>,
 }
 
-impl<M: Method> MethodDrawing<M> {
-    fn of(method: M) -> Self {
-        Self { method, kept: None }
+impl<'m> MeshDrawing<'m> {
+    fn new(mesh_box: MeshBox, aa_log2: u32, draw: Draw<'m>) -> Self {
+        Self {
+            mesh_box,
+            aa_log2,
+            draw,
+            kept: None,
+        }
     }
 
     fn view(&self, camera: &Camera) -> Result<RasterCamera, DrawError> {
-        let MeshBox { low, high, .. } = self.method.mesh_box();
+        let MeshBox { low, high, .. } = self.mesh_box;
         Ok(view_of(camera, (low.into(), high.into()))?)
     }
 }
 
-impl<M: Method> Drawable for MethodDrawing<M> {
+impl Drawable for MeshDrawing<'_> {
     fn bounds(&self) -> Bounds {
-        Bounds::of_mesh(&self.method.mesh_box())
+        Bounds::of_mesh(&self.mesh_box)
     }
 
     fn up(&self) -> Up {
-        Up::y_or_z(self.method.mesh_box().y_up)
+        Up::y_or_z(self.mesh_box.y_up)
     }
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        let aa_log2 = self.method.aa_log2();
-        check_samples(camera, aa_log2, MESH_SAMPLE_BYTES, COLOR_BYTES, 0)?;
+        check_samples(camera, self.aa_log2, MESH_SAMPLE_BYTES, COLOR_BYTES, 0)?;
         let view = self.view(camera)?;
-        let (mut drawn, times) = timed(runs, || Ok(self.method.draw(&view)?))?;
+        let (mut drawn, times) = timed(runs, || Ok((self.draw)(&view)?))?;
         if camera.ortho.is_some() {
             // The distant eye's depths become the camera's.
             let behind = (camera.eye - view.eye).dot(view.forward);
@@ -151,15 +124,14 @@ impl<M: Method> Drawable for MethodDrawing<M> {
             coverage: &drawn.coverage,
             times_ms,
             counters: drawn.counters.clone(),
-            details: self.method.details(),
+            details: drawn.details.clone(),
         }))
     }
 
     fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError> {
         let view = self.view(camera)?;
-        let mut method = self.method.clone();
         Ok(Box::new(move || {
-            std::hint::black_box(method.draw(&view)?);
+            std::hint::black_box((self.draw)(&view)?);
             Ok(())
         }))
     }

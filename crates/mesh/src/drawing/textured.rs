@@ -3,12 +3,12 @@
 use serde_json::json;
 
 use super::mesh_view::light_of;
-use super::{Drawn, Method, MethodDrawing, MethodError};
+use super::triangles::is_seen;
+use super::{Drawn, MeshDrawing};
 use crate::raster::{Pattern, RasterCamera, RasterOptions, Samples};
 use crate::textured::TexturedFile;
-use crate::textured::view::{Erosion, TexturedCounts, ViewOptions, draw};
+use crate::textured::view::{self, Erosion, TexturedCounts, ViewOptions};
 use shiftvox::drawing::Figures;
-use shiftvox::graph::MeshBox;
 use shiftvox::picture::{Background, Shading};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,45 +20,21 @@ pub struct TexturedStyle {
     pub background: Background,
 }
 
-#[derive(Clone)]
-pub struct TexturedMethod<'f> {
-    file: &'f TexturedFile,
-    style: TexturedStyle,
-}
-
-pub type TexturedDrawing<'f> = MethodDrawing<TexturedMethod<'f>>;
-
-impl<'f> TexturedDrawing<'f> {
-    pub fn new(file: &'f TexturedFile, style: TexturedStyle) -> Self {
-        Self::of(TexturedMethod { file, style })
-    }
-}
-
-impl Method for TexturedMethod<'_> {
-    fn mesh_box(&self) -> MeshBox {
-        self.file.mesh_box()
-    }
-
-    fn aa_log2(&self) -> u32 {
-        self.style.aa_log2
-    }
-
-    fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError> {
+pub fn of_textured(file: &TexturedFile, style: TexturedStyle) -> MeshDrawing<'_> {
+    let draw = move |view: &RasterCamera| {
         let options = ViewOptions {
-            erosion: self.style.erosion,
+            erosion: style.erosion,
             raster: RasterOptions {
-                samples: Samples::new(1 << (2 * self.style.aa_log2), Pattern::Regular)?,
-                light: light_of(view, self.style.shading),
-                background: self.style.background.color(),
+                samples: Samples::new(style.aa_log2, Pattern::Regular),
+                light: light_of(view, style.shading),
+                background: style.background.color(),
             },
         };
-        let (drawn, counts) = draw(self.file, view, &options)?;
-        Ok(Drawn::of_triangles(drawn, counters(self.file, &counts)))
-    }
-
-    fn details(&self) -> Figures {
-        vec![("engine", json!("textured"))]
-    }
+        let (drawn, counts) = view::draw(file, view, &options)?;
+        let details = vec![("engine", json!("textured"))];
+        Ok(Drawn::new(drawn, is_seen, counters(file, &counts), details))
+    };
+    MeshDrawing::new(file.mesh_box(), style.aa_log2, Box::new(draw))
 }
 
 fn counters(file: &TexturedFile, counts: &TexturedCounts) -> Figures {

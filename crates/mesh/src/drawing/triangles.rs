@@ -3,11 +3,10 @@
 use serde_json::json;
 
 use super::mesh_view::light_of;
-use super::{Drawn, Method, MethodDrawing, MethodError};
-use crate::raster::{self, RasterCamera, RasterOptions, Samples};
+use super::{Drawn, MeshDrawing};
+use crate::raster::{self, NOTHING, RasterCamera, RasterOptions, Samples};
 use crate::{Mesh, mesh_box};
-use shiftvox::drawing::Figures;
-use shiftvox::graph::{MeshBox, Progress};
+use shiftvox::graph::Progress;
 use shiftvox::picture::{Background, Shading};
 use shiftvox::project::Up;
 
@@ -18,51 +17,29 @@ pub struct TrianglesStyle {
     pub background: Background,
 }
 
-#[derive(Clone)]
-pub struct TrianglesMethod<'m> {
+pub fn of_triangles<'m>(
     mesh: &'m Mesh,
-    mesh_box: MeshBox,
+    up: Up,
     style: TrianglesStyle,
     progress: &'m dyn Progress,
-}
-
-pub type TrianglesDrawing<'m> = MethodDrawing<TrianglesMethod<'m>>;
-
-impl<'m> TrianglesDrawing<'m> {
-    pub fn new(mesh: &'m Mesh, up: Up, style: TrianglesStyle, progress: &'m dyn Progress) -> Self {
-        Self::of(TrianglesMethod {
-            mesh,
-            mesh_box: mesh_box(mesh, up == Up::Y),
-            style,
-            progress,
-        })
-    }
-}
-
-impl Method for TrianglesMethod<'_> {
-    fn mesh_box(&self) -> MeshBox {
-        self.mesh_box
-    }
-
-    fn aa_log2(&self) -> u32 {
-        0
-    }
-
-    fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError> {
-        let samples = self.style.samples;
+) -> MeshDrawing<'m> {
+    let draw = move |view: &RasterCamera| {
         let options = RasterOptions {
-            samples,
-            light: light_of(view, self.style.shading),
-            background: self.style.background.color(),
+            samples: style.samples,
+            light: light_of(view, style.shading),
+            background: style.background.color(),
         };
-        let drawn = raster::draw(self.mesh, view, &options, self.progress)?;
-        let samples = drawn.rgba.len() * samples.per_pixel();
-        let triangles = self.mesh.triangles().len();
+        let drawn = raster::draw(mesh, view, &options, progress)?;
+        let samples = drawn.rgba.len() * style.samples.per_pixel();
+        let triangles = mesh.triangles().len();
         let counters = vec![("triangles", json!(triangles)), ("samples", json!(samples))];
-        Ok(Drawn::of_triangles(drawn, counters))
-    }
+        let details = vec![("engine", json!("triangles"))];
+        Ok(Drawn::new(drawn, is_seen, counters, details))
+    };
+    MeshDrawing::new(mesh_box(mesh, up == Up::Y), 0, Box::new(draw))
+}
 
-    fn details(&self) -> Figures {
-        vec![("engine", json!("triangles"))]
-    }
+/// Triangles are not nodes: 0 where one is seen, else -1.
+pub(super) fn is_seen(triangle: u32) -> i32 {
+    -i32::from(triangle == NOTHING)
 }

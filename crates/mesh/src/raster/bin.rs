@@ -13,7 +13,7 @@ use super::clip::Outline;
 use super::edges::{Cover, Edges};
 use super::samples::{Places, SUBPIXELS};
 use super::shade::{Nearness, Paint, Seen, Side, light_of, point_seen};
-use super::{NO_TRIANGLE, RasterCamera, RasterOptions, RasterPicture};
+use super::{NOTHING, RasterCamera, RasterOptions, RasterPicture};
 use crate::Surface;
 use crate::material::{to_light, to_srgb};
 
@@ -90,7 +90,7 @@ impl Bin {
             places: Places::new(&options.samples, corner, columns, rows),
             nearness: vec![0.0; samples],
             faces_eye: vec![true; samples],
-            triangle: vec![NO_TRIANGLE; samples],
+            triangle: vec![NOTHING; samples],
             layers: Vec::new(),
             width: 1.0 / (options.samples.per_pixel() as f64).sqrt(),
             rounding: rounding(surface.bounds()),
@@ -122,7 +122,7 @@ impl Bin {
             picture.rgba[at] = pixel.rgba;
             picture.coverage[at] = pixel.coverage;
             picture.depth[at] = pixel.depth;
-            picture.triangle[at] = pixel.triangle;
+            picture.seen[at] = pixel.triangle;
         }
     }
 }
@@ -271,7 +271,7 @@ impl Buffer<'_> {
                     behind = rest;
                 }
                 let number = self.triangle[at];
-                if number != NO_TRIANGLE {
+                if number != NOTHING {
                     sum += paints.light(number, at, self.nearness[at]) * passing;
                     passing = 0.0;
                 }
@@ -326,7 +326,8 @@ impl<S: Surface + ?Sized> Paints<'_, '_, S> {
     }
 }
 
-fn mixed(sum: DVec3, seen: f64, samples: f64, background: Option<DVec3>) -> [u8; 4] {
+/// A pixel's colour, of so many samples that see something: premultiplied linear light, and the background's.
+pub(crate) fn mixed(sum: DVec3, seen: f64, samples: f64, background: Option<DVec3>) -> [u8; 4] {
     let (mean, alpha) = match background {
         Some(background) => {
             let behind = background * (samples - seen);

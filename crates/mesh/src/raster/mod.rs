@@ -15,8 +15,9 @@ mod shade;
 use glam::DVec3;
 use rayon::prelude::*;
 
+pub(crate) use bin::mixed;
 pub(crate) use edges::Edges;
-pub use samples::{Pattern, Samples, SamplesError};
+pub use samples::{Pattern, Samples};
 pub use shade::Light;
 
 use super::Surface;
@@ -24,8 +25,8 @@ use bin::Bin;
 use bins::Bins;
 use shiftvox::graph::Progress;
 
-/// `triangle` where nothing is seen.
-pub const NO_TRIANGLE: u32 = u32::MAX;
+/// What is seen where nothing is.
+pub const NOTHING: u32 = u32::MAX;
 /// Most pixels a side: what the bits of an edge function have room for.
 pub const MAX_SIDE: u32 = 1 << 15;
 
@@ -113,13 +114,13 @@ pub struct RasterPicture {
     pub height: u32,
     /// Colour, sRGB, and coverage, not premultiplied; averaged in linear light.
     pub rgba: Vec<[u8; 4]>,
-    /// Share of the pixel's samples that see a triangle.
+    /// Share of the pixel's samples that see something.
     pub coverage: Vec<f32>,
-    /// View-axis depth, world units, at the sample right of and below the pixel's middle, or at the middle with one
-    /// sample. It is infinite where that sample sees nothing.
+    /// View-axis depth of what is opaque, world units, at the sample right of and below the pixel's middle, or at the
+    /// middle with one sample. It is infinite where that sample sees nothing.
     pub depth: Vec<f32>,
-    /// The triangle that this sample sees, or [`NO_TRIANGLE`].
-    pub triangle: Vec<u32>,
+    /// The triangle that this sample sees, of far voxels the node, or [`NOTHING`].
+    pub seen: Vec<u32>,
 }
 
 /// Draws a surface. Both sides of a triangle are drawn. Of triangles at the same depth the first that faces the eye
@@ -146,7 +147,7 @@ pub(crate) fn draw_before<S: Surface + ?Sized>(
 ) -> Result<RasterPicture, RasterError> {
     let (width, height) = (view.width, view.height);
     view.check()?;
-    if u32::try_from(surface.len()).map_or(true, |count| count == NO_TRIANGLE) {
+    if u32::try_from(surface.len()).map_or(true, |count| count == NOTHING) {
         return Err(RasterError::TooMany(surface.len()));
     }
     let bins = Bins::fill(surface, view);
@@ -167,7 +168,7 @@ pub(crate) fn draw_before<S: Surface + ?Sized>(
         rgba: vec![[0; 4]; pixels],
         coverage: vec![0.0; pixels],
         depth: vec![f32::INFINITY; pixels],
-        triangle: vec![NO_TRIANGLE; pixels],
+        seen: vec![NOTHING; pixels],
     };
     for bin in &bins {
         bin.store(&mut picture);

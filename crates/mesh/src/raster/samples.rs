@@ -26,25 +26,11 @@ pub struct Samples {
     pattern: Pattern,
 }
 
-/// A number of samples that there is not.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("a pixel has 1, 4, 16 or 256 samples, not {0}")]
-pub struct SamplesError(pub u32);
-
 impl Samples {
-    /// A pattern of 1, 4, 16 or 256 samples per pixel.
-    ///
-    /// # Errors
-    /// When it is another number.
-    pub fn new(per_pixel: u32, pattern: Pattern) -> Result<Self, SamplesError> {
-        let side = match per_pixel {
-            1 => 1,
-            4 => 2,
-            16 => 4,
-            256 => 16,
-            other => return Err(SamplesError(other)),
-        };
-        Ok(Self { side, pattern })
+    /// `4^side_log2` samples per pixel, at most 256.
+    pub fn new(side_log2: u32, pattern: Pattern) -> Self {
+        let side = 1 << side_log2.min(4);
+        Self { side, pattern }
     }
 
     /// Samples of a pixel.
@@ -110,9 +96,9 @@ mod tests {
 
     #[test]
     fn each_square_has_one_sample() {
-        for per_pixel in [1, 4, 16, 256] {
+        for side_log2 in [0, 1, 2, 4] {
             for pattern in [Pattern::Regular, Pattern::Stratified { seed: 7 }] {
-                let samples = Samples::new(per_pixel, pattern).unwrap();
+                let samples = Samples::new(side_log2, pattern);
                 let square = SUBPIXELS / i64::from(samples.side);
                 for number in 0..samples.per_pixel() {
                     let [x, y] = samples.place([3, 900], number).map(|c| c / square);
@@ -121,15 +107,14 @@ mod tests {
             }
         }
         let [a, b] = [1, 2].map(|seed| {
-            let samples = Samples::new(16, Pattern::Stratified { seed }).unwrap();
+            let samples = Samples::new(2, Pattern::Stratified { seed });
             [[3, 900], [4, 900], [3, 901]].map(|pixel| [0, 1].map(|n| samples.place(pixel, n)))
         });
         let mut places = [a, b].as_flattened().to_vec();
         places.sort_unstable();
         places.dedup();
         assert_eq!(places.len(), 6, "seeds and pixels differ");
-        let regular = |per_pixel| Samples::new(per_pixel, Pattern::Regular);
-        assert!(regular(2).is_err());
-        assert_eq!([1, 4, 16].map(|n| regular(n).unwrap().middle()), [0, 3, 10]);
+        let regular = |side_log2| Samples::new(side_log2, Pattern::Regular);
+        assert_eq!([0, 1, 2].map(|log2| regular(log2).middle()), [0, 3, 10]);
     }
 }

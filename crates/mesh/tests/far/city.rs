@@ -3,9 +3,9 @@
 use glam::DVec3;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::far::store::encode;
-use shiftvox_mesh::far::view::{self, FarCounts, FarPicture, ViewOptions};
+use shiftvox_mesh::far::view::{self, FarCounts, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarData, FarFile, build};
-use shiftvox_mesh::raster::{Light, RasterCamera};
+use shiftvox_mesh::raster::{Light, RasterCamera, RasterPicture};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
 use super::shared::{cuboid, looking, sheet};
@@ -87,6 +87,6 @@ pub(crate) fn draw(
     file: &FarFile,
     view: &RasterCamera,
     options: &ViewOptions,
-) -> (FarPicture, FarCounts) {
+) -> (RasterPicture, FarCounts) {
     view::draw(file, view, options).unwrap()
 }

@@ -76,7 +76,7 @@ fn files_and_pictures_have_their_hashes_on_any_number_of_threads() {
                 bytes.extend(picture.rgba.as_flattened());
                 let reals = picture.depth.iter().chain(&picture.coverage);
                 bytes.extend(reals.flat_map(|real| real.to_le_bytes()));
-                bytes.extend(picture.node.iter().flat_map(|node| node.to_le_bytes()));
+                bytes.extend(picture.seen.iter().flat_map(|node| node.to_le_bytes()));
                 bytes.extend(format!("{counts:?}").bytes());
             }
         }

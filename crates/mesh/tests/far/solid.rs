@@ -7,6 +7,7 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::far::record::Node;
 use shiftvox_mesh::far::view::{Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarData, build};
+use shiftvox_mesh::raster::NOTHING;
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
 use super::city::{draw, file_of};
@@ -61,9 +62,9 @@ fn closed_spheres_hide_everything_inside() {
             let (picture, _) = draw(&file, &view, &options(opacity));
             let is_red = |p: &[u8; 4]| p[0].abs_diff(p[1]) > 2;
             assert!(!picture.rgba.iter().any(is_red), "{opacity:?} {size}");
-            let nodes = picture.node.iter().filter_map(|&n| usize::try_from(n).ok());
-            let nodes: BTreeSet<usize> = nodes.collect();
-            let nodes: Vec<&Node> = nodes.into_iter().map(|n| &data.nodes[n]).collect();
+            let nodes = picture.seen.iter().filter(|&&node| node != NOTHING);
+            let nodes: BTreeSet<u32> = nodes.copied().collect();
+            let nodes: Vec<&Node> = nodes.into_iter().map(|n| &data.nodes[n as usize]).collect();
             inner_nodes += nodes.iter().filter(|node| !node.is_leaf()).count();
             let levels: BTreeSet<u16> = nodes.iter().map(|node| node.level).collect();
             mixed += usize::from(levels.len() > 1);

@@ -10,7 +10,7 @@ use shiftvox::graph::{Graph, LinkedGraph, Silent, vxg};
 use shiftvox::machine::Machine;
 use shiftvox::picture::{Background, Shading, hash_rows};
 use shiftvox::project::{Direction, Engine, Lens, SetupOptions, fit_camera};
-use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
+use shiftvox_mesh::drawing::{FarStyle, TexturedStyle, of_far, of_textured};
 use shiftvox_mesh::far::{self, FarFile, view::Opacity};
 use shiftvox_mesh::open::{OpenOptions, open_bytes};
 use shiftvox_mesh::textured::{self, Element, TexturedFile, view::Erosion};
@@ -188,7 +188,7 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
                 shading,
                 background,
             };
-            draw(&mut FarDrawing::new(&file, style));
+            draw(&mut of_far(&file, style));
         }
         Format::Tvx => {
             let Ok(file) = TexturedFile::from_bytes(bytes) else {
@@ -200,7 +200,7 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
                 shading,
                 background,
             };
-            draw(&mut TexturedDrawing::new(&file, style));
+            draw(&mut of_textured(&file, style));
         }
     }
     is_sound(format, bytes)

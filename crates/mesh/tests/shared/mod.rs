@@ -60,7 +60,7 @@ pub fn directions(count: u32) -> impl Iterator<Item = DVec3> {
 /// Unlit, with a regular pattern of samples, without a background.
 pub fn plain(samples: u32) -> RasterOptions {
     RasterOptions {
-        samples: Samples::new(samples, Pattern::Regular).unwrap(),
+        samples: Samples::new(samples.ilog2() / 2, Pattern::Regular),
         light: None,
         background: None,
     }

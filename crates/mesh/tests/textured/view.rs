@@ -5,9 +5,10 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::generate::{Kind, generate};
 use shiftvox_mesh::raster::{RasterCamera, RasterPicture};
 use shiftvox_mesh::textured::view::{
-    Erosion, TexturedCounts, ViewError, ViewOptions, choose, choose_grid, draw,
+    Erosion, TexturedCounts, ViewOptions, choose, choose_grid, draw,
 };
 use shiftvox_mesh::textured::{Element, TexturedFile, build};
+use shiftvox_mesh::view_error::ViewError;
 
 use super::scenes::{balls, built, file_of, middle, options, view};
 use super::shared::{DISC, around, card, directions, disc, plain, triangles};

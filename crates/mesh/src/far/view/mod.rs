@@ -7,10 +7,13 @@ mod samples;
 mod splat;
 mod transparent;
 
+use glam::DVec3;
+
 pub use super::record::Opacity;
-use super::store::{FarError, FarFile};
-use crate::raster::{Light, RasterCamera, RasterError};
-use crate::{linear_to_srgb, srgb_to_linear};
+use super::store::FarFile;
+use crate::material::to_light;
+use crate::raster::{Light, RasterCamera, RasterPicture, mixed};
+use crate::view_error::ViewError;
 use cut::Cut;
 use opaque::Opaque;
 
@@ -43,32 +46,6 @@ const MOST_SAMPLES_ACROSS: u32 = 16;
 /// From so many on a hybrid's nodes are drawn as their `across` says. With fewer, triangles flicker and voxels look better.
 const FINE: u32 = 4;
 
-#[derive(Debug, thiserror::Error)]
-pub enum ViewError {
-    #[error(transparent)]
-    File(#[from] FarError),
-    #[error(transparent)]
-    Raster(#[from] RasterError),
-    #[error("voxels are drawn at a size above 0 pixels, not {0}")]
-    VoxelSize(f64),
-    #[error("a pixel has 1 to {MOST_SAMPLES_ACROSS} samples along each axis, not {0}")]
-    Samples(u32),
-}
-
-/// A finished picture, row by row from the top left.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FarPicture {
-    pub width: u32,
-    pub height: u32,
-    /// Colour, sRGB, and coverage, not premultiplied.
-    pub rgba: Vec<[u8; 4]>,
-    pub coverage: Vec<f32>,
-    /// View-axis depth, world units, of the opaque surface at the sample right of and below the pixel's middle, or infinite.
-    pub depth: Vec<f32>,
-    /// The node that is opaque at that sample, or -1.
-    pub node: Vec<i32>,
-}
-
 /// Work of one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FarCounts {
@@ -93,14 +70,11 @@ pub fn draw(
     file: &FarFile,
     view: &RasterCamera,
     options: &ViewOptions,
-) -> Result<(FarPicture, FarCounts), ViewError> {
+) -> Result<(RasterPicture, FarCounts), ViewError> {
     if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
         return Err(ViewError::VoxelSize(options.voxel_px));
     }
-    let across = options.samples_across;
-    if !(1..=MOST_SAMPLES_ACROSS).contains(&across) {
-        return Err(ViewError::Samples(across));
-    }
+    let across = options.samples_across.clamp(1, MOST_SAMPLES_ACROSS);
     let (pixels, view) = (view, &samples::finer(view, across));
     let mut counts = FarCounts::default();
     let cut = Cut {
@@ -125,12 +99,13 @@ pub fn draw(
     opaque.lay_glass(&mut drawn);
     let size = [pixels.width, pixels.height].map(|side| side as usize);
     let drawn = samples::averaged(drawn, size, across as usize);
-    let picture = FarPicture {
+    let background = options.background.map(to_light);
+    let picture = RasterPicture {
         width: pixels.width,
         height: pixels.height,
-        rgba: drawn.iter().map(|p| p.encode(options.background)).collect(),
+        rgba: drawn.iter().map(|p| p.encode(background)).collect(),
         coverage: drawn.iter().map(|p| p.coverage).collect(),
-        node: samples::middles(&opaque.nodes(), size, across as usize),
+        seen: samples::middles(&opaque.nodes(), size, across as usize),
         depth: samples::middles(&opaque.depths(), size, across as usize),
     };
     Ok((picture, counts))
@@ -144,21 +119,8 @@ struct Pixel {
 }
 
 impl Pixel {
-    fn encode(&self, background: Option<[u8; 3]>) -> [u8; 4] {
-        if self.coverage <= 0.0 {
-            return background.map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
-        }
-        let light = self.light.map(f64::from);
-        let coverage = f64::from(self.coverage);
-        let (light, alpha) = match background {
-            Some(color) => {
-                let mixed =
-                    |k: usize| light[k] + (1.0 - coverage) * f64::from(srgb_to_linear(color[k]));
-                ([0, 1, 2].map(mixed), 255)
-            }
-            None => (light.map(|l| l / coverage), (coverage * 255.0 + 0.5) as u8),
-        };
-        let [r, g, b] = light.map(linear_to_srgb);
-        [r, g, b, alpha]
+    fn encode(&self, background: Option<DVec3>) -> [u8; 4] {
+        let light = DVec3::from(self.light.map(f64::from));
+        mixed(light, f64::from(self.coverage), 1.0, background)
     }
 }

@@ -8,13 +8,12 @@ use rayon::prelude::*;
 
 use super::cut::Chosen;
 use super::splat::Places;
-use super::{FarCounts, Opacity, Pixel, ViewError, ViewOptions};
+use super::{FarCounts, Opacity, Pixel, ViewOptions};
 use crate::far::record::{LISTS, LeafTriangle, OpacityKind, RECORD_BYTES, Voxel};
 use crate::far::store::{FarFile, NodeData};
 use crate::geometry::point;
-use crate::raster::{
-    self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, Samples,
-};
+use crate::raster::{self, NOTHING, Pattern, RasterCamera, RasterOptions, Samples};
+use crate::view_error::ViewError;
 use crate::{Surface, Texture, Triangle, srgb_to_linear};
 use shiftvox::graph::{PackedNormal, Silent};
 
@@ -116,14 +115,14 @@ impl<'f> Opaque<'f> {
     fn surfaces(&mut self, nodes: &[usize]) -> Result<u64, ViewError> {
         let surface = Surfaces::of(self.file, nodes)?;
         let options = RasterOptions {
-            samples: Samples::new(1, Pattern::Regular).map_err(|_| RasterError::Camera)?,
+            samples: Samples::new(0, Pattern::Regular),
             light: self.options.light,
             background: None,
         };
         let depths = self.depths();
         let drawn = raster::draw_before(&surface, &self.view, &options, Some(&depths), &Silent)?;
-        for (pixel, &at) in drawn.triangle.iter().enumerate() {
-            if at != NO_TRIANGLE {
+        for (pixel, &at) in drawn.seen.iter().enumerate() {
+            if at != NOTHING {
                 let id = self.file.voxels() + surface.places[at as usize].2;
                 let depth = drawn.depth[pixel].to_bits();
                 // The rasteriser has compared depths.
@@ -139,16 +138,16 @@ impl<'f> Opaque<'f> {
         self.words.iter().map(depth).collect()
     }
 
-    pub(super) fn nodes(&self) -> Vec<i32> {
+    pub(super) fn nodes(&self) -> Vec<u32> {
         let voxels = self.file.voxels();
         let node = |word: &AtomicU64| {
             let word = word.load(Ordering::Relaxed);
             let node = match word as u32 {
-                _ if word == EMPTY => return -1,
+                _ if word == EMPTY => return NOTHING,
                 id if id < voxels => last_from(self.file.first_voxels(), id),
                 id => last_from(self.file.first_triangles(), id - voxels),
             };
-            i32::try_from(node).unwrap_or(i32::MAX)
+            node as u32
         };
         self.words.iter().map(node).collect()
     }

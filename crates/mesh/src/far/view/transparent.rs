@@ -7,10 +7,11 @@ use rayon::prelude::*;
 use super::cut::Chosen;
 use super::opaque::light_of;
 use super::splat::{PARTS, Places, Square};
-use super::{Pixel, ViewError, ViewOptions};
+use super::{Pixel, ViewOptions};
 use crate::far::record::{LISTS, OpacityKind, RECORD_BYTES, Voxel};
 use crate::far::store::FarFile;
 use crate::raster::RasterCamera;
+use crate::view_error::ViewError;
 
 const BAND: usize = 16;
 

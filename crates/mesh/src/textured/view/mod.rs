@@ -6,12 +6,13 @@
 mod choose;
 mod scene;
 
-use crate::raster::{self, RasterCamera, RasterError, RasterOptions, RasterPicture};
+use crate::raster::{self, RasterCamera, RasterOptions, RasterPicture};
+use crate::view_error::ViewError;
 use shiftvox::graph::Silent;
 
 pub use choose::{Choice, choose, choose_grid};
 
-use super::store::{TexturedError, TexturedFile};
+use super::store::TexturedFile;
 use scene::Shown;
 
 /// How often voxels are eroded.
@@ -31,22 +32,6 @@ pub enum Erosion {
 pub struct ViewOptions {
     pub erosion: Erosion,
     pub raster: RasterOptions,
-}
-
-#[derive(Debug, thiserror::Error)]
-pub enum ViewError {
-    #[error(transparent)]
-    File(#[from] TexturedError),
-    #[error(transparent)]
-    Raster(#[from] RasterError),
-    #[error("the file has no grid of {cells} cells")]
-    NoGrid {
-        cells: u32,
-        /// The numbers of cells of the file's grids.
-        has: Vec<u32>,
-    },
-    #[error("texels are wanted at a size above 0 pixels, not {0}")]
-    TexelSize(f64),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
