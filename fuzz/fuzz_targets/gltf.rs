@@ -1,12 +1,12 @@
 //! JSON; of `.glb` a byte, which times 16 is the length of the JSON with itself, JSON and a buffer. A mesh or an error.
 
 use shiftvox::graph::Silent;
-use shiftvox_mesh::{LoadOptions, MeshFormat, Nothing, read};
+use shiftvox_mesh::{ColorSpace, MeshFormat, no_files, read};
 
 pub(crate) fn run(format: MeshFormat, bytes: &[u8]) {
-    let options = LoadOptions::default();
+    let colors = ColorSpace::default();
     let result = if format == MeshFormat::Gltf {
-        read(bytes, format, "fuzz", &Nothing, &options, &Silent)
+        read(bytes, format, "fuzz", &no_files, colors, &Silent)
     } else {
         let cut = bytes.first().map_or(0, |&b| usize::from(b) * 16);
         let (json, buffer) = bytes.split_at(cut.max(1).min(bytes.len()));
@@ -18,7 +18,7 @@ pub(crate) fn run(format: MeshFormat, bytes: &[u8]) {
             file.extend(kind);
             file.extend(content);
         }
-        read(&file, format, "fuzz", &Nothing, &options, &Silent)
+        read(&file, format, "fuzz", &no_files, colors, &Silent)
     };
     if let Ok(mesh) = result {
         assert!(mesh.triangles().iter().flatten().all(|&i| (i as usize) < mesh.positions().len()));

@@ -14,7 +14,7 @@ use shiftvox::project::Up;
 use shiftvox::scene::{self, FileKind, MeshSummary, NoMeshes, Opened, ReadOptions, Source};
 use shiftvox_lab::report::grouped;
 use shiftvox_mesh::open::{MeshOptions, OpenOptions, read_mesh};
-use shiftvox_mesh::{ListFolder, LoadOptions, Mesh};
+use shiftvox_mesh::{ListFolder, Mesh};
 
 /// Most voxels of a file that is dropped on a page: a small one may have runs without end.
 const MOST_DROPPED_VOXELS: u64 = 1 << 26;
@@ -153,8 +153,8 @@ pub(super) fn open_mesh(
         ));
     }
     fatal_signals::reads(source);
-    let load = options(args).mesh.load;
-    let (mesh, y_up) = read_mesh(Path::new(source), &load, within, console.progress())?;
+    let colors = args.mesh_colors;
+    let (mesh, y_up) = read_mesh(Path::new(source), colors, within, console.progress())?;
     for warning in mesh.warnings() {
         console.note(format!("{source}: {warning}"));
     }
@@ -181,9 +181,7 @@ pub(super) fn options(args: &SceneArgs) -> OpenOptions {
         },
         mesh: MeshOptions {
             depth: args.mesh_depth(),
-            load: LoadOptions {
-                mtl_colors: args.mesh_colors,
-            },
+            mtl_colors: args.mesh_colors,
             opacities: args.opacities,
             y_up: args.mesh_up.map(|up| up == Up::Y),
         },

@@ -10,7 +10,6 @@ use super::geometry::{area, plane_normal, point};
 use super::list::{List, ListFolder};
 use super::load::{Fault, Place, Problem};
 use super::{Material, Mesh, Surface, Texture, Triangle};
-use shiftvox::budget::{self, Shortage};
 
 const MOST: usize = u32::MAX as usize;
 
@@ -23,8 +22,6 @@ pub struct BadIndex {
     pub positions: usize,
 }
 
-type Given = ([u32; 3], Option<[[f32; 3]; 3]>, u32, Option<[[f64; 2]; 3]>);
-
 /// Collects positions and triangles and leaves out what cannot be drawn.
 ///
 /// Left out, with a warning: triangles with a coordinate that is not finite, without area, or of a material with opacity
@@ -35,8 +32,6 @@ pub struct MeshBuilder {
     not_finite: u64,
     degenerate: u64,
     invisible: u64,
-    /// Triangles of opacity 0, while there are no others.
-    hidden: List<Given>,
     seen: u64,
     too_many: bool,
     folder: Option<Arc<ListFolder>>,
@@ -61,7 +56,6 @@ impl MeshBuilder {
                 tints: List::within(folder),
                 ..Mesh::default()
             },
-            hidden: List::within(folder),
             folder: folder.cloned(),
             ..Self::default()
         }
@@ -110,34 +104,6 @@ impl MeshBuilder {
         colors.pad(number as usize, [255; 3]);
         colors.push(color);
         number
-    }
-
-    /// Makes room for so many positions and triangles more.
-    ///
-    /// # Errors
-    /// [`Shortage`] where there is less memory.
-    pub fn reserve(&mut self, positions: usize, triangles: usize) -> Result<(), Shortage> {
-        const WHAT: &str = "a mesh";
-        let mesh = &mut self.mesh;
-        let needed = positions * size_of::<[f64; 3]>() + triangles * size_of::<([u32; 3], u32)>();
-        let needed = needed as u64;
-        let lists = (
-            mesh.positions.vector(),
-            mesh.triangles.vector(),
-            mesh.material_of.vector(),
-        );
-        let (Some(places), Some(corners), Some(materials)) = lists else {
-            return Ok(());
-        };
-        budget::check(WHAT, needed)?;
-        let had = places.try_reserve_exact(positions);
-        let had = had.and_then(|()| corners.try_reserve_exact(triangles));
-        let had = had.and_then(|()| materials.try_reserve_exact(triangles));
-        had.map_err(|_| Shortage {
-            what: WHAT,
-            needed,
-            free: budget::available(),
-        })
     }
 
     /// A position that it has.
@@ -195,17 +161,6 @@ impl MeshBuilder {
             self.degenerate += 1;
             return Ok(());
         }
-        let alpha = self.mesh.materials.get(material as usize).map(|m| m.alpha);
-        if alpha == Some(0.0) {
-            self.invisible += 1;
-            if self.mesh.triangles.is_empty() && self.hidden.len() < MOST {
-                self.hidden.push((corners, normals, material, places));
-            }
-            return Ok(());
-        }
-        if !self.hidden.is_empty() {
-            self.hidden = List::default();
-        }
         if self.mesh.triangles.len() >= MOST {
             self.too_many = true;
             return Ok(());
@@ -240,27 +195,28 @@ impl MeshBuilder {
         Ok(())
     }
 
-    fn show_hidden(&mut self) {
-        let hidden = std::mem::take(&mut self.hidden);
-        if hidden.is_empty() {
+    /// Leaves out triangles of materials with opacity 0, unless there are no others.
+    fn leave_out_invisible(&mut self) {
+        let mesh = &mut self.mesh;
+        if mesh.materials.iter().all(|material| material.alpha != 0.0) {
             return;
         }
-        for material in &mut self.mesh.materials {
-            if material.alpha == 0.0 {
+        let alpha = |of: u32| mesh.materials.get(of as usize).map(|m| m.alpha);
+        let materials = mesh.material_of.iter();
+        let is_shown: Vec<bool> = materials.map(|&of| alpha(of) != Some(0.0)).collect();
+        if is_shown.contains(&true) {
+            mesh.keep(&is_shown);
+            self.invisible = (is_shown.len() - mesh.triangles.len()) as u64;
+        } else if !is_shown.is_empty() {
+            for material in mesh.materials.iter_mut().filter(|m| m.alpha == 0.0) {
                 material.alpha = 1.0;
             }
+            self.warn(format!(
+                "all {} triangles are of materials with opacity 0, which some programs write for opaque ones: they are \
+                 drawn opaque",
+                is_shown.len()
+            ));
         }
-        self.warn(format!(
-            "all {} triangles are of materials with opacity 0, which some programs write for opaque ones: they are \
-             drawn opaque",
-            hidden.len()
-        ));
-        self.invisible = 0;
-        let seen = self.seen;
-        for &(corners, normals, material, places) in hidden.iter() {
-            let _ = self.textured_triangle(corners, normals, material, places);
-        }
-        self.seen = seen;
     }
 
     /// The mesh, of a file of that name.
@@ -269,7 +225,7 @@ impl MeshBuilder {
     /// When no triangle is left, or when there are more than 2^32 of anything.
     pub fn finish(mut self, file: &str) -> Result<Mesh, SceneError> {
         self.check_folder()?;
-        self.show_hidden();
+        self.leave_out_invisible();
         let in_file = |error: Problem| error.in_file(file);
         if self.too_many {
             let expected = "fewer than 2^32 positions and triangles";
@@ -332,15 +288,22 @@ impl MeshBuilder {
     }
 }
 
+impl Mesh {
+    /// Keeps the triangles for which there is `true`.
+    fn keep(&mut self, is_kept: &[bool]) {
+        self.triangles.keep(is_kept);
+        self.material_of.keep(is_kept);
+        self.corner_normals.keep(is_kept);
+        self.places.keep(is_kept);
+    }
+}
+
 /// Leaves out triangles whose texture is clear everywhere, unless there are no others.
 fn leave_out_clear(mesh: &mut Mesh) {
     let numbers = (0..mesh.triangles.len()).into_par_iter();
     let is_shown: Vec<bool> = numbers.map(|n| !is_clear(&mesh.triangle(n))).collect();
     if is_shown.contains(&true) && is_shown.contains(&false) {
-        mesh.triangles.keep(&is_shown);
-        mesh.material_of.keep(&is_shown);
-        mesh.corner_normals.keep(&is_shown);
-        mesh.places.keep(&is_shown);
+        mesh.keep(&is_shown);
     }
 }
 

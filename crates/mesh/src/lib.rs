@@ -42,7 +42,7 @@ pub use shiftvox::scene::{FileKind as MeshFormat, SceneError};
 pub use builder::{BadIndex, MeshBuilder};
 pub use geometry::barycentric;
 pub use list::ListFolder;
-pub use load::{Beside, LoadOptions, Nothing, SameFolder, read};
+pub use load::{Beside, no_files, read, same_folder};
 pub use material::{ColorSpace, Material, linear_to_srgb, srgb_to_linear};
 pub use scene_options::SceneOptions;
 pub use surface::{Instances, Surface, Triangle, mesh_box};

@@ -110,7 +110,7 @@ impl ListFolder {
     }
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -232,16 +232,8 @@ impl<T: Copy> List<T> {
     }
 
     pub(crate) fn shrink_to_fit(&mut self) {
-        if let Some(list) = self.vector() {
+        if let Held::Memory(list) = &mut self.0 {
             list.shrink_to_fit();
-        }
-    }
-
-    /// Of a list in memory.
-    pub(crate) fn vector(&mut self) -> Option<&mut Vec<T>> {
-        match &mut self.0 {
-            Held::Memory(list) => Some(list),
-            Held::File(_) => None,
         }
     }
 

@@ -12,7 +12,7 @@ use shiftvox::scene::{
 
 use crate::load::read_into;
 use crate::voxelize::{self, DEFAULT_DEPTH, Grid, GridError};
-use crate::{Beside, ListFolder, LoadOptions, Mesh, MeshBuilder, Nothing, SameFolder, mesh_box};
+use crate::{Beside, ColorSpace, ListFolder, Mesh, MeshBuilder, mesh_box, no_files, same_folder};
 
 const COUNTED_DEPTH: u32 = 8;
 
@@ -21,7 +21,8 @@ const COUNTED_DEPTH: u32 = 8;
 pub struct MeshOptions {
     /// Levels below the root: at most `2^depth` voxels a side.
     pub depth: u32,
-    pub load: LoadOptions,
+    /// How the colours of an MTL are meant.
+    pub mtl_colors: ColorSpace,
     /// Whether the voxels get opacities (`spec/mesh.md`, "Opacities"); only a
     /// scene that is built in memory has room for them.
     pub opacities: bool,
@@ -33,7 +34,7 @@ impl Default for MeshOptions {
     fn default() -> Self {
         Self {
             depth: DEFAULT_DEPTH,
-            load: LoadOptions::default(),
+            mtl_colors: ColorSpace::default(),
             opacities: false,
             y_up: None,
         }
@@ -79,14 +80,14 @@ pub fn open_bytes(
 /// this folder, and its own file is mapped.
 pub fn read_mesh(
     path: &Path,
-    options: &LoadOptions,
+    mtl_colors: ColorSpace,
     within: Option<&Arc<ListFolder>>,
     progress: &dyn Progress,
 ) -> Result<(Mesh, bool), OpenError> {
     let (file, beside) = (SceneFile::open(path)?, path.parent());
     let Some(folder) = within else {
         let file = file.mesh_file(beside.map(Path::to_owned))?;
-        let mesh = read(&file, options, progress)?;
+        let mesh = read(&file, mtl_colors, progress)?;
         return Ok((mesh, is_y_up(file.kind)));
     };
     let (file, kind) = file.mesh_stream()?;
@@ -97,8 +98,8 @@ pub fn read_mesh(
         source,
     })?;
     let builder = MeshBuilder::within(within);
-    let beside = SameFolder::new(beside.unwrap_or(Path::new("")));
-    let mesh = read_into(builder, &bytes, kind, &name, &beside, options, progress);
+    let beside = same_folder(beside.unwrap_or(Path::new("")));
+    let mesh = read_into(builder, &bytes, kind, &name, &beside, mtl_colors, progress);
     let mesh = mesh.map_err(|error| match error {
         SceneError::Io { source, .. } => OpenError::External {
             source_name: name.clone(),
@@ -118,19 +119,13 @@ fn is_y_up(kind: FileKind) -> bool {
 
 fn read(
     file: &MeshFile,
-    options: &LoadOptions,
+    mtl_colors: ColorSpace,
     progress: &dyn Progress,
 ) -> Result<Mesh, OpenError> {
-    let folder = file.folder.as_deref().map(SameFolder::new);
-    let beside = folder.as_ref().map_or(&Nothing as &dyn Beside, |f| f);
-    let mesh = crate::read(
-        &file.bytes,
-        file.kind,
-        &file.name,
-        beside,
-        options,
-        progress,
-    );
+    let folder = file.folder.as_deref().map(same_folder);
+    let beside: &Beside<'_> = folder.as_ref().map_or(&no_files, |files| files);
+    let (name, kind) = (&file.name, file.kind);
+    let mesh = crate::read(&file.bytes, kind, name, beside, mtl_colors, progress);
     mesh.map_err(OpenError::from)
 }
 
@@ -149,7 +144,7 @@ impl Ready {
         progress: &dyn Progress,
     ) -> Result<Self, OpenError> {
         let started = Instant::now();
-        let mesh = read(file, &options.load, progress)?;
+        let mesh = read(file, options.mtl_colors, progress)?;
         let load_ms = started.elapsed().as_secs_f64() * 1e3;
         let refused = |error: GridError| {
             let is_limit = matches!(error, GridError::TooMany(_) | GridError::TooMuch { .. });

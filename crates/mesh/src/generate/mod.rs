@@ -115,7 +115,7 @@ pub fn ply(mesh: &Mesh) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{LoadOptions, MeshFormat, Nothing, read};
+    use crate::{ColorSpace, MeshFormat, no_files, read};
     use shiftvox::graph::Silent;
 
     #[test]
@@ -125,10 +125,10 @@ mod tests {
             let mesh = generate(kind, 1);
             assert!((1_000..60_000).contains(&mesh.len()), "{name}");
             assert_ne!(mesh.positions(), generate(kind, 2).positions(), "{name}");
-            let options = LoadOptions::default();
+            let colors = ColorSpace::default();
             let bytes = ply(&mesh);
             assert!(bytes == ply(&generate(kind, 1)), "{name}");
-            let again = read(&bytes, MeshFormat::Ply, name, &Nothing, &options, &Silent).unwrap();
+            let again = read(&bytes, MeshFormat::Ply, name, &no_files, colors, &Silent).unwrap();
             assert_eq!(again.len(), mesh.len(), "{name}");
             for number in (0..mesh.len()).step_by(97) {
                 let (a, b) = (mesh.triangle(number), again.triangle(number));

@@ -3,9 +3,9 @@
 
 use shiftvox::scene::DEFAULT_COLOR;
 
-use super::{LoadOptions, text};
-use crate::Material;
+use super::text;
 use crate::texture::Wrap;
+use crate::{ColorSpace, Material};
 
 pub(super) struct Library {
     /// In the order of the file.
@@ -50,7 +50,7 @@ struct Found {
     is_emissive: bool,
 }
 
-pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
+pub(super) fn read(bytes: &[u8], colors: ColorSpace) -> Library {
     let text = text::decoded(bytes);
     let mut found: Vec<Found> = Vec::new();
     let mut odd_line = None;
@@ -121,7 +121,7 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
         }
     }
     let emissive = found.iter().filter(|found| found.is_emissive).count();
-    let materials = found.into_iter().map(|found| found.material(options));
+    let materials = found.into_iter().map(|found| found.material(colors));
     Library {
         materials: materials.collect(),
         odd_line,
@@ -161,14 +161,14 @@ fn picture(mut rest: &str) -> Option<(String, Place)> {
 }
 
 impl Found {
-    fn material(self, options: &LoadOptions) -> (Material, Pictures) {
+    fn material(self, colors: ColorSpace) -> (Material, Pictures) {
         let color = match (&self.pictures.color, self.color) {
             // Programs that write a black factor, or none, mean the picture alone.
             (Some(_), None | Some([0.0, 0.0, 0.0])) => Some([1.0; 3]),
             (_, color) => color,
         };
         let material = match color {
-            Some(color) => Material::of_numbers(self.name, color, options.mtl_colors, self.alpha),
+            Some(color) => Material::of_numbers(self.name, color, colors, self.alpha),
             None => Material {
                 alpha: self.alpha.clamp(0.0, 1.0),
                 ..Material::of_srgb(self.name, DEFAULT_COLOR)

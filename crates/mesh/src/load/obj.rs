@@ -9,18 +9,18 @@ use std::str::SplitWhitespace;
 
 use super::mtl::{self, Pictures};
 use super::texture::{Parts, Textures};
-use super::{Beside, Fault, LoadOptions, Place, Problem, check_corners, polygon, text};
+use super::{Beside, Fault, Place, Problem, check_corners, polygon, text};
 use crate::list::List;
 use crate::texture::AlphaMode;
-use crate::{Material, MeshBuilder};
+use crate::{ColorSpace, Material, MeshBuilder};
 
 /// A corner without texture coordinate or normal, or a position that no triangle used yet.
 const NONE: u32 = u32::MAX;
 
 pub(super) fn read(
     bytes: &[u8],
-    beside: &dyn Beside,
-    options: &LoadOptions,
+    beside: &Beside<'_>,
+    mtl_colors: ColorSpace,
     builder: &mut MeshBuilder,
 ) -> Result<(), Problem> {
     let text = text::decoded(bytes);
@@ -36,7 +36,7 @@ pub(super) fn read(
         ..File::default()
     };
     for (line, number) in text.split_inclusive('\n').zip(1..) {
-        file.line(line, number, beside, options, builder)?;
+        file.line(line, number, beside, mtl_colors, builder)?;
     }
     file.build(beside, builder)
 }
@@ -73,8 +73,8 @@ impl File {
         &mut self,
         line: &str,
         number: u64,
-        beside: &dyn Beside,
-        options: &LoadOptions,
+        beside: &Beside<'_>,
+        mtl_colors: ColorSpace,
         builder: &mut MeshBuilder,
     ) -> Result<(), Problem> {
         let mut words = line.split_whitespace();
@@ -144,7 +144,7 @@ impl File {
             "usemtl" if rest().is_empty() => Err(wrong("usemtl", "a material's name"))?,
             "usemtl" => self.current = self.by_name.get(rest()).copied().unwrap_or(0),
             "l" | "p" => self.wires += 1,
-            "mtllib" => self.library(rest(), beside, options, builder),
+            "mtllib" => self.library(rest(), beside, mtl_colors, builder),
             _ => {}
         }
         Ok(())
@@ -178,16 +178,16 @@ impl File {
     fn library(
         &mut self,
         name: &str,
-        beside: &dyn Beside,
-        options: &LoadOptions,
+        beside: &Beside<'_>,
+        mtl_colors: ColorSpace,
         builder: &mut MeshBuilder,
     ) {
         self.libraries += 1;
-        let library = match beside.read(name) {
-            Ok(bytes) => mtl::read(&bytes, options),
+        let library = match beside(name) {
+            Ok(bytes) => mtl::read(&bytes, mtl_colors),
             Err(_) if name.contains(char::is_whitespace) => {
                 for name in name.split_whitespace() {
-                    self.library(name, beside, options, builder);
+                    self.library(name, beside, mtl_colors, builder);
                 }
                 return;
             }
@@ -223,7 +223,7 @@ impl File {
     }
 
     /// Passes the triangles of all faces to the builder, and the positions in the order of their first use.
-    fn build(self, beside: &dyn Beside, builder: &mut MeshBuilder) -> Result<(), Problem> {
+    fn build(self, beside: &Beside<'_>, builder: &mut MeshBuilder) -> Result<(), Problem> {
         let mut numbers = List::within(builder.folder());
         numbers.pad(self.positions.len(), NONE);
         if !builder.has_room() {
@@ -263,7 +263,7 @@ impl File {
                     mode: AlphaMode::Blend,
                     wrap: [pictures.place.wrap; 2],
                 };
-                let texture = textures.get(parts, |name| beside.read(name));
+                let texture = textures.get(parts, beside);
                 let texture = texture.map(|texture| builder.set_texture(material, texture));
                 texture.is_some()
             });

@@ -25,7 +25,7 @@ struct Vertices {
 
 pub(super) fn read(
     mut bytes: &[u8],
-    beside: &dyn Beside,
+    beside: &Beside<'_>,
     builder: &mut MeshBuilder,
 ) -> Result<(), Problem> {
     let mut file = PlyFile::open(&mut bytes)?;
@@ -151,7 +151,7 @@ pub(super) fn read(
 }
 
 /// A material for each picture that can be read.
-fn textured(names: &[String], beside: &dyn Beside, builder: &mut MeshBuilder) -> Vec<Option<u32>> {
+fn textured(names: &[String], beside: &Beside<'_>, builder: &mut MeshBuilder) -> Vec<Option<u32>> {
     let mut textures = Textures::default();
     let material = |name: &String| {
         let parts = Parts {
@@ -160,7 +160,7 @@ fn textured(names: &[String], beside: &dyn Beside, builder: &mut MeshBuilder) ->
             mode: AlphaMode::Blend,
             wrap: [Wrap::Repeat; 2],
         };
-        let texture = textures.get(parts, |name| beside.read(name))?;
+        let texture = textures.get(parts, beside)?;
         let material = builder.material(Material::of_srgb(name, [255; 3]));
         builder.set_texture(material, texture);
         Some(material)

@@ -1,17 +1,24 @@
 //! The contents of files written by hand.
 
 use shiftvox::graph::Silent;
-use shiftvox_mesh::{Beside, ColorSpace, LoadOptions, Mesh, MeshFormat, SameFolder, read};
+use shiftvox_mesh::{ColorSpace, Mesh, MeshFormat, read, same_folder};
 
 use super::shapes::{load, squares};
-use super::shared::{Files, has, soup};
+use super::shared::{files_of, has, soup};
 
 /// Reads a mesh beside the library `a b.mtl`.
 fn obj(text: &str, mtl: &str, mtl_colors: ColorSpace) -> Mesh {
-    let options = LoadOptions { mtl_colors };
-    let library = Files(|name: &str| (name == "a b.mtl").then(|| mtl.into()));
+    let library = files_of(|name| (name == "a b.mtl").then(|| mtl.into()));
     let text = text.as_bytes();
-    read(text, MeshFormat::Obj, "a file", &library, &options, &Silent).unwrap()
+    read(
+        text,
+        MeshFormat::Obj,
+        "a file",
+        &library,
+        mtl_colors,
+        &Silent,
+    )
+    .unwrap()
 }
 
 fn materials(mesh: &Mesh) -> Vec<&str> {
@@ -118,21 +125,13 @@ fn a_model_is_opaque_if_all_of_it_would_vanish() {
 #[test]
 fn one_line_names_several_libraries() {
     let text = "mtllib a.mtl b.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 3 2 1\n";
-    let libraries = Files(|name: &str| match name {
+    let libraries = files_of(|name| match name {
         "a.mtl" => Some(b"newmtl red\n".to_vec()),
         "b.mtl" => Some(b"newmtl blue\n".to_vec()),
         _ => None,
     });
-    let (text, options) = (text.as_bytes(), LoadOptions::default());
-    let mesh = read(
-        text,
-        MeshFormat::Obj,
-        "a file",
-        &libraries,
-        &options,
-        &Silent,
-    )
-    .unwrap();
+    let (text, colors) = (text.as_bytes(), ColorSpace::default());
+    let mesh = read(text, MeshFormat::Obj, "a", &libraries, colors, &Silent).unwrap();
     assert_eq!(materials(&mesh), ["red", "blue"]);
     assert!(mesh.warnings().is_empty());
 }
@@ -144,12 +143,12 @@ fn only_the_folder_of_the_mesh_is_searched() {
     std::fs::create_dir(&inside).unwrap();
     std::fs::write(folder.path().join("secret.mtl"), b"outside").unwrap();
     std::fs::write(inside.join("a.mtl"), b"inside").unwrap();
-    let beside = SameFolder::new(&inside);
+    let beside = same_folder(&inside);
     for name in "a.mtl ./a.mtl ../elsewhere/a.mtl /tmp/a.mtl C:\\models\\a.mtl".split(' ') {
-        assert_eq!(beside.read(name).unwrap(), b"inside", "{name}");
+        assert_eq!(beside(name).unwrap(), b"inside", "{name}");
     }
     for name in ["../secret.mtl", "..", "", "/"] {
-        assert!(beside.read(name).is_err(), "{name}");
+        assert!(beside(name).is_err(), "{name}");
     }
 }
 

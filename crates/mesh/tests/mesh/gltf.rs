@@ -4,10 +4,10 @@ use std::cell::Cell;
 
 use serde_json::{Value, json};
 use shiftvox::graph::Silent;
-use shiftvox_mesh::{LoadOptions, Mesh, MeshFormat, read};
+use shiftvox_mesh::{ColorSpace, Mesh, MeshFormat, read};
 
 use super::shapes::{CORNERS, data_uri, gltf_json, load, square_buffer, square_json};
-use super::shared::{Files, has, soup};
+use super::shared::{files_of, has, soup};
 
 /// Parts of the square's document with other values, and the corners of all triangles.
 const SCENES: &str = r#"
@@ -199,11 +199,11 @@ fn a_file_with_many_references_is_read_once() {
     let mut json = gltf_json("");
     json["buffers"] = json!(vec![json!({"uri": "a%20b.bin", "byteLength": 60}); 1000]);
     let json = json.to_string().into_bytes();
-    let (reads, options) = (Cell::new(0), LoadOptions::default());
-    let files = Files(|name: &str| {
+    let (reads, colors) = (Cell::new(0), ColorSpace::default());
+    let files = files_of(|name| {
         reads.set(reads.get() + 1);
         (name == "a b.bin").then(square_buffer)
     });
-    let mesh = read(&json, MeshFormat::Gltf, "a", &files, &options, &Silent);
+    let mesh = read(&json, MeshFormat::Gltf, "a", &files, colors, &Silent);
     assert_eq!((mesh.unwrap().triangles().len(), reads.get()), (2, 1));
 }

@@ -8,12 +8,12 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use shiftvox::graph::Silent;
-use shiftvox_mesh::{self, LoadOptions, Mesh, MeshFormat, Nothing, SceneError};
+use shiftvox_mesh::{self, ColorSpace, Mesh, MeshFormat, SceneError, no_files};
 
 /// Reads a mesh without other files.
 pub fn load(bytes: &[u8], format: MeshFormat) -> Result<Mesh, SceneError> {
-    let options = LoadOptions::default();
-    shiftvox_mesh::read(bytes, format, "a file", &Nothing, &options, &Silent)
+    let colors = ColorSpace::default();
+    shiftvox_mesh::read(bytes, format, "a file", &no_files, colors, &Silent)
 }
 
 pub const CORNERS: [[f32; 3]; 4] = [

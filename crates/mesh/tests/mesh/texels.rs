@@ -7,7 +7,7 @@ use glam::DVec3;
 use shiftvox::graph::{Silent, sixteenths};
 use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::raster::RasterPicture;
-use shiftvox_mesh::{Mesh, linear_to_srgb, srgb_to_linear};
+use shiftvox_mesh::{ColorSpace, Mesh, linear_to_srgb, srgb_to_linear};
 
 use super::opacities::graph_of;
 use super::shared::{DISC, Texels, bytes_of, card, disc, looking, on_threads, triangles};
@@ -165,8 +165,8 @@ fn of_layers_the_front_one_counts_first() {
         format!("mtllib a.mtl\n{squares}"),
     )
     .unwrap();
-    let options = Default::default();
-    let mesh = read_mesh(&folder.path().join("a.obj"), &options, None, &Silent)
+    let colors = ColorSpace::default();
+    let mesh = read_mesh(&folder.path().join("a.obj"), colors, None, &Silent)
         .unwrap()
         .0;
     let drawn = seen(&mesh, 4, 4);

@@ -34,7 +34,7 @@ fn check(mesh: &Mesh, triangle: usize, expected: [f64; 3], within: f64) {
 }
 
 fn read(path: &Path) -> Mesh {
-    read_mesh(path, &Default::default(), None, &Silent)
+    read_mesh(path, Default::default(), None, &Silent)
         .unwrap()
         .0
 }

@@ -14,7 +14,7 @@ use shiftvox_mesh::drawing::{FarStyle, TexturedStyle, of_far, of_textured};
 use shiftvox_mesh::far::{self, FarFile, view::Opacity};
 use shiftvox_mesh::open::{OpenOptions, open_bytes};
 use shiftvox_mesh::textured::{self, Element, TexturedFile, view::Erosion};
-use shiftvox_mesh::{LoadOptions, MeshFormat, Nothing, read};
+use shiftvox_mesh::{ColorSpace, MeshFormat, no_files, read};
 
 use super::seal;
 
@@ -36,8 +36,8 @@ pub(crate) fn sound_files() -> Vec<(Format, Vec<u8>, usize)> {
         vxg::write_to(&graph, &mut bytes).unwrap();
         files.push((Format::Vxg, bytes, 512));
     }
-    let (text, load) = (OBJ.as_bytes(), LoadOptions::default());
-    let mesh = read(text, MeshFormat::Obj, "a", &Nothing, &load, &Silent).unwrap();
+    let (text, colors) = (OBJ.as_bytes(), ColorSpace::default());
+    let mesh = read(text, MeshFormat::Obj, "a", &no_files, colors, &Silent).unwrap();
     for (leaf_triangles, opacity, hybrid) in [
         (1000, Opacity::Six, false),
         (3, Opacity::Six, false),

@@ -13,7 +13,7 @@ use glam::DVec3;
 use shiftvox::graph::Silent;
 use shiftvox::picture::png;
 use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples};
-use shiftvox_mesh::{Beside, LoadOptions, Material, Mesh, MeshBuilder, MeshFormat, Surface, read};
+use shiftvox_mesh::{ColorSpace, Material, Mesh, MeshBuilder, MeshFormat, Surface, read};
 use xxhash_rust::xxh3::xxh3_64;
 
 pub type Corners = [[f32; 3]; 3];
@@ -205,7 +205,7 @@ impl Texels {
 pub fn card(picture: &Texels, cells: u32, inside: f64, mtl: &str) -> Mesh {
     let mtl = format!("newmtl a\n{mtl}\n").into_bytes();
     let files = HashMap::from([("a.mtl", mtl), ("a.png", picture.png())]);
-    let files = Files(|name: &str| files.get(name).cloned());
+    let files = files_of(|name| files.get(name).cloned());
     let mut obj = "mtllib a.mtl\nusemtl a\n".to_owned();
     for (i, j) in (0..cells * cells).map(|cell| (cell % cells, cell / cells)) {
         for [x, y] in [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]] {
@@ -215,25 +215,13 @@ pub fn card(picture: &Texels, cells: u32, inside: f64, mtl: &str) -> Mesh {
         }
         obj += "f -4/-4 -3/-3 -2/-2 -1/-1\n";
     }
-    let options = LoadOptions::default();
-    read(
-        obj.as_bytes(),
-        MeshFormat::Obj,
-        "a.obj",
-        &files,
-        &options,
-        &Silent,
-    )
-    .unwrap()
+    let (text, colors) = (obj.as_bytes(), ColorSpace::default());
+    read(text, MeshFormat::Obj, "a.obj", &files, colors, &Silent).unwrap()
 }
 
 /// Files by a function of their name.
-pub struct Files<F>(pub F);
-
-impl<F: Fn(&str) -> Option<Vec<u8>>> Beside for Files<F> {
-    fn read(&self, name: &str) -> io::Result<Vec<u8>> {
-        self.0(name).ok_or_else(|| io::ErrorKind::NotFound.into())
-    }
+pub fn files_of(file: impl Fn(&str) -> Option<Vec<u8>>) -> impl Fn(&str) -> io::Result<Vec<u8>> {
+    move |name| file(name).ok_or_else(|| io::ErrorKind::NotFound.into())
 }
 
 /// An opaque disc of a radius of 24 of 64 texels, and the opacity around it.

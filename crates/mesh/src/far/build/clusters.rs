@@ -4,12 +4,13 @@ use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::rays::{Around, Cluster, Meeting, Query, is_any_entered};
+use crate::list::lock;
 
 pub(super) const CLUSTER: usize = 1 << 17;
 /// Bytes per triangle of a cluster while it is made, or less.
@@ -107,10 +108,7 @@ impl<'s> Occluders<'s> {
     fn get(&self, number: usize) -> io::Result<Arc<Cluster>> {
         match &self.held {
             Held::All(all) => Ok(all[number].clone()),
-            Held::Some(cache) => cache
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .get(number),
+            Held::Some(cache) => lock(cache).get(number),
         }
     }
 }

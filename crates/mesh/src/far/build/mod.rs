@@ -23,7 +23,7 @@ mod touch;
 
 use std::collections::HashMap;
 use std::fs::{File, TryLockError};
-use std::io::{self, Cursor, Read, Seek, Write};
+use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -35,6 +35,7 @@ use xxhash_rust::xxh3::Xxh3;
 use super::record::{Node, Opacity};
 use super::store::{VERSION, write_parts};
 use super::{FarData, FarSettings};
+use crate::list::lock;
 use crate::texture::paint::Textures;
 use crate::{Sampler, Surface, mesh_box};
 use clusters::{CLUSTER, Occluders, Part, Stops};
@@ -44,7 +45,7 @@ use rays::Around;
 use room::{Room, shares};
 use shiftvox::graph::{Progress, place};
 use split::{Branch, split};
-use spool::{Done, Spool};
+use spool::{Head, Spool};
 use surface::Surfaces;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -132,7 +133,7 @@ pub struct Outside<'o> {
 pub struct Spooled {
     /// All but the data: `packed` is empty.
     pub data: FarData,
-    spool: Spool<File>,
+    spool: Spool,
 }
 
 impl Spooled {
@@ -153,11 +154,19 @@ pub fn build(
     options: &BuildOptions,
     progress: &dyn Progress,
 ) -> Result<FarData, BuildError> {
-    let memory = Cursor::new(Vec::new());
-    let (mut data, mut spool) = fill(surface, options, None, || Ok(memory), progress)?;
+    let folder = std::env::temp_dir();
+    let outside = Outside {
+        memory: None,
+        folder: &folder,
+        unfinished: None,
+    };
+    let Spooled {
+        mut data,
+        mut spool,
+    } = build_outside(surface, options, &outside, progress)?;
     data.packed.reserve_exact(spool.bytes() as usize);
     let copied = spool.copy_to(&mut data.packed);
-    copied.map_err(|e| failed(Path::new("memory"), &e))?;
+    copied.map_err(|e| failed(&folder, &e))?;
     Ok(data)
 }
 
@@ -168,11 +177,91 @@ pub fn build_outside(
     outside: &Outside<'_>,
     progress: &dyn Progress,
 ) -> Result<Spooled, BuildError> {
-    let file = || match outside.unfinished {
-        Some(unfinished) => unfinished_file(unfinished),
-        None => temporary_file(outside.folder),
+    check(surface, options)?;
+    let (centre, scale) = centre(surface)?;
+    let Outside {
+        memory,
+        folder,
+        unfinished,
+    } = *outside;
+    let shares = shares(surface.len(), options.hybrid, memory)?;
+    progress.begin("split triangles", 0);
+    let corners = |number: usize| surface.corners(number);
+    let fewest = options.leaf_triangles as usize;
+    let (mut branches, order) = split(surface.len(), corners, fewest);
+    let coarser = levels::put_above(&mut branches, options.grid);
+    progress.end();
+    if u32::try_from(branches.len()).is_err() {
+        return Err(BuildError::TooMany(format!("{} nodes", branches.len())));
+    }
+    let triangles = Ordered {
+        surface,
+        order: &order,
+        centre,
+        scale,
     };
-    let (data, spool) = fill(surface, options, Some(outside), file, progress)?;
+    progress.begin("prepare rays", 0);
+    let within = shares
+        .clusters
+        .map(|most| Ok((temporary_file(folder)?, most)));
+    let within = within.transpose()?;
+    let corners = |own: Range<usize>| own.map(|number| triangles.corners(number));
+    let parts = parts(&branches, |point| triangles.place(point));
+    let stops = |number: usize, point: DVec3| triangles.stops(number, point);
+    let is_clear = (0..surface.len()).any(|number| !surface.is_opaque(number));
+    let stops = is_clear.then_some(&stops as &Stops<'_>);
+    let occluders = Occluders::new(parts, corners, stops, within);
+    let occluders = occluders.map_err(|e| failed(folder, &e))?;
+    progress.end();
+    let textures = Textures::new(surface.textures());
+    let surfaces = || Surfaces::new(surface, &order, centre, options, &branches, &textures);
+    let maker = Maker {
+        options,
+        triangles: &triangles,
+        textures: &textures,
+        surfaces: options.hybrid.then(surfaces),
+        occluders: &occluders,
+        room: Room::new(shares.nodes),
+        folder,
+        coarser,
+    };
+    let rays = levels::rays(&maker, &branches, progress);
+    let key = unfinished.map_or(0, |_| key_of(surface, options));
+    let kept_in = unfinished.unwrap_or(folder);
+    let file = match unfinished {
+        Some(unfinished) => unfinished_file(unfinished)?,
+        None => temporary_file(folder)?,
+    };
+    let spool = Spool::open(file, key, branches.len()).map_err(|e| failed(kept_in, &e))?;
+    let spool = spool.ok_or_else(|| BuildError::File {
+        file: kept_in.to_owned(),
+        problem: "it was begun of another mesh, or with other options: remove it".to_owned(),
+    })?;
+    progress.begin("shoot rays", order.len() as u64);
+    let is_done: Vec<bool> = (0..branches.len()).map(|n| spool.is_done(n)).collect();
+    let spool = Mutex::new(spool);
+    branches
+        .par_iter()
+        .enumerate()
+        .try_for_each(|(number, branch)| {
+            if !is_done[number] {
+                let made = maker.node(number, branch, rays[number])?;
+                let mut spool = lock(&spool);
+                let added = spool.add(number, &made);
+                added.map_err(|e| failed(kept_in, &e))?;
+            }
+            if branch.children.is_none() {
+                progress.advance(branch.count as u64);
+            }
+            Ok(())
+        })?;
+    progress.end();
+    let spool = spool.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let mut data = assemble(&spool, centre, options)?;
+    data.undecimated = spool.nodes().map(|done| done.is_undecimated).sum();
+    data.settings.bevels = mesh_box(surface, data.settings.y_up).bevels;
+    drop(maker);
+    data.textures = textures.list;
     Ok(Spooled { data, spool })
 }
 
@@ -221,95 +310,6 @@ fn failed(file: &Path, problem: &io::Error) -> BuildError {
         file: file.to_owned(),
         problem: problem.to_string(),
     }
-}
-
-fn fill<F: Read + Write + Seek + Send>(
-    surface: &dyn Surface,
-    options: &BuildOptions,
-    outside: Option<&Outside<'_>>,
-    file: impl FnOnce() -> Result<F, BuildError>,
-    progress: &dyn Progress,
-) -> Result<(FarData, Spool<F>), BuildError> {
-    check(surface, options)?;
-    let (centre, scale) = centre(surface)?;
-    let folder = outside.map_or(Path::new("memory"), |outside| outside.folder);
-    let memory = outside.and_then(|outside| outside.memory);
-    let shares = shares(surface.len(), options.hybrid, memory)?;
-    progress.begin("split triangles", 0);
-    let corners = |number: usize| surface.corners(number);
-    let fewest = options.leaf_triangles as usize;
-    let (mut branches, order) = split(surface.len(), corners, fewest);
-    let coarser = levels::put_above(&mut branches, options.grid);
-    progress.end();
-    if u32::try_from(branches.len()).is_err() {
-        return Err(BuildError::TooMany(format!("{} nodes", branches.len())));
-    }
-    let triangles = Ordered {
-        surface,
-        order: &order,
-        centre,
-        scale,
-    };
-    progress.begin("prepare rays", 0);
-    let within = shares
-        .clusters
-        .map(|most| Ok((temporary_file(folder)?, most)));
-    let within = within.transpose()?;
-    let corners = |own: Range<usize>| own.map(|number| triangles.corners(number));
-    let parts = parts(&branches, |point| triangles.place(point));
-    let stops = |number: usize, point: DVec3| triangles.stops(number, point);
-    let is_clear = (0..surface.len()).any(|number| !surface.is_opaque(number));
-    let stops = is_clear.then_some(&stops as &Stops<'_>);
-    let occluders = Occluders::new(parts, corners, stops, within);
-    let occluders = occluders.map_err(|e| failed(folder, &e))?;
-    progress.end();
-    let textures = Textures::new(surface.textures());
-    let surfaces = || Surfaces::new(surface, &order, centre, options, &branches, &textures);
-    let maker = Maker {
-        options,
-        triangles: &triangles,
-        textures: &textures,
-        surfaces: options.hybrid.then(surfaces),
-        occluders: &occluders,
-        room: Room::new(shares.nodes),
-        folder,
-        coarser,
-    };
-    let rays = levels::rays(&maker, &branches, progress);
-    let unfinished = outside.and_then(|outside| outside.unfinished);
-    let key = unfinished.map_or(0, |_| key_of(surface, options));
-    let kept_in = unfinished.unwrap_or(folder);
-    let spool = Spool::open(file()?, key, branches.len()).map_err(|e| failed(kept_in, &e))?;
-    let spool = spool.ok_or_else(|| BuildError::File {
-        file: kept_in.to_owned(),
-        problem: "it was begun of another mesh, or with other options: remove it".to_owned(),
-    })?;
-    progress.begin("shoot rays", order.len() as u64);
-    let is_done: Vec<bool> = (0..branches.len()).map(|n| spool.is_done(n)).collect();
-    let spool = Mutex::new(spool);
-    branches
-        .par_iter()
-        .enumerate()
-        .try_for_each(|(number, branch)| {
-            if !is_done[number] {
-                let made = maker.node(number, branch, rays[number])?;
-                let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
-                let added = spool.add(number, &made);
-                added.map_err(|e| failed(kept_in, &e))?;
-            }
-            if branch.children.is_none() {
-                progress.advance(branch.count as u64);
-            }
-            Ok(())
-        })?;
-    progress.end();
-    let spool = spool.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let mut data = assemble(&spool, centre, options)?;
-    data.undecimated = spool.nodes().filter(|done| done.is_undecimated).count() as u32;
-    data.settings.bevels = mesh_box(surface, data.settings.y_up).bevels;
-    drop(maker);
-    data.textures = textures.list;
-    Ok((data, spool))
 }
 
 fn parts(branches: &[Branch], place: impl Fn(DVec3) -> DVec3) -> Vec<Part> {
@@ -377,12 +377,8 @@ fn centre(surface: &dyn Surface) -> Result<(DVec3, f64), BuildError> {
     Ok((centre, libm::ldexp(1.0, -power)))
 }
 
-fn assemble<F: Read + Write + Seek>(
-    spool: &Spool<F>,
-    centre: DVec3,
-    options: &BuildOptions,
-) -> Result<FarData, BuildError> {
-    let items = |done: Done| done.node.voxels() + u64::from(done.node.surface);
+fn assemble(spool: &Spool, centre: DVec3, options: &BuildOptions) -> Result<FarData, BuildError> {
+    let items = |done: &Head| done.node.voxels() + u64::from(done.node.surface);
     let numbered: u64 = spool.nodes().map(items).sum();
     if numbered >= u64::from(u32::MAX) {
         let what = format!("{numbered} voxels and triangles");
@@ -396,8 +392,8 @@ fn assemble<F: Read + Write + Seek>(
         undecimated: 0,
     };
     let mut data_at = 0;
-    for Done { node, bytes, .. } in spool.nodes() {
-        data.nodes.push(Node { data_at, ..node });
+    for Head { node, bytes, .. } in spool.nodes() {
+        data.nodes.push(Node { data_at, ..*node });
         data_at += bytes;
     }
     Ok(data)

@@ -13,7 +13,8 @@ pub(super) struct Parts {
     spans: Vec<[u32; 2]>,
     /// At vertices that leaves share: normals of all triangles, as long as their areas.
     normals: HashMap<u32, Vec<DVec3>>,
-    sizes: Vec<PartSize>,
+    /// Of each triangle's part.
+    pub(super) sizes: Vec<PartSize>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,28 +68,27 @@ impl Parts {
                 }
             }
         }
-        let mut parts: HashMap<u32, Part> = HashMap::new();
+        let mut parts: HashMap<u32, (DVec3, DVec3, f64)> = HashMap::new();
         for (number, root) in roots.iter().enumerate() {
             let corners = corners(number).map(point);
-            let part = parts.entry(*root).or_insert(Part {
-                low: corners[0],
-                high: corners[0],
-                area: 0.0,
-            });
-            (part.low, part.high) = bounds([part.low, part.high].into_iter().chain(corners));
-            part.area += area(corners);
+            let (low, high, sum) = parts.entry(*root).or_insert((corners[0], corners[0], 0.0));
+            (*low, *high) = bounds([*low, *high].into_iter().chain(corners));
+            *sum += area(corners);
         }
-        let size = |root| parts[root].size();
+        let size = |root| {
+            let (low, high, area) = parts[root];
+            let extent = (high - low).length();
+            PartSize {
+                width: (area / extent) as f32,
+                radius: (extent / 2.0) as f32,
+            }
+        };
         Self {
             vertices,
             spans,
             normals,
             sizes: roots.iter().map(size).collect(),
         }
-    }
-
-    pub(super) fn size(&self, triangle: usize) -> PartSize {
-        self.sizes[triangle]
     }
 
     /// The normals of all triangles at a position that a node, of a range of triangles, shares with others.
@@ -104,20 +104,4 @@ impl Parts {
 /// Zeros of both signs are one place.
 fn bits(position: [f32; 3]) -> [u32; 3] {
     position.map(|x| (x + 0.0).to_bits())
-}
-
-struct Part {
-    low: DVec3,
-    high: DVec3,
-    area: f64,
-}
-
-impl Part {
-    fn size(&self) -> PartSize {
-        let extent = (self.high - self.low).length();
-        PartSize {
-            width: (self.area / extent) as f32,
-            radius: (extent / 2.0) as f32,
-        }
-    }
 }

@@ -4,6 +4,7 @@ use std::sync::{Condvar, Mutex, PoisonError};
 
 use super::BuildError;
 use super::clusters::{CLUSTER, MADE, MAKING};
+use crate::list::lock;
 
 /// Most bytes per triangle while the parts of a hybrid are found.
 const PARTS_BYTES: u64 = 160;
@@ -68,7 +69,7 @@ impl Room {
 
     /// Waits until there are so many bytes, or no other node has any.
     pub(super) fn take(&self, bytes: u64) -> Taken<'_> {
-        let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut taken = lock(&self.taken);
         while *taken > 0 && taken.saturating_add(bytes) > self.most {
             let woken = self.freed.wait(taken);
             taken = woken.unwrap_or_else(PoisonError::into_inner);
@@ -80,12 +81,7 @@ impl Room {
 
 impl Drop for Taken<'_> {
     fn drop(&mut self) {
-        let mut taken = self
-            .room
-            .taken
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        *taken -= self.bytes;
+        *lock(&self.room.taken) -= self.bytes;
         self.room.freed.notify_all();
     }
 }

@@ -9,7 +9,6 @@ use crate::geometry::bounds;
 const SLICES: usize = 32;
 pub(super) const MOST_LEVELS: u32 = 64;
 const PARALLEL: usize = 4096;
-const WITH_BOXES: usize = 1 << 16;
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Branch {
@@ -20,19 +19,6 @@ pub(super) struct Branch {
     pub(super) count: usize,
     /// The places of the children in the list, or `None` for a leaf.
     pub(super) children: Option<[usize; 2]>,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Item {
-    low: DVec3,
-    high: DVec3,
-    number: u32,
-}
-
-impl Item {
-    fn middle(&self) -> DVec3 {
-        (self.low + self.high) * 0.5
-    }
 }
 
 impl Branch {
@@ -55,42 +41,19 @@ pub(super) fn split(
     corners: impl Fn(usize) -> [DVec3; 3] + Sync,
     leaf_triangles: usize,
 ) -> (Vec<Branch>, Vec<u32>) {
-    let item_of = |&number: &u32| {
+    let box_of = |number: u32| {
         let [a, b, c] = corners(number as usize);
-        Item {
+        Slice {
             low: a.min(b).min(c),
             high: a.max(b).max(c),
-            number,
+            count: 1,
         }
     };
     let mut numbers: Vec<u32> = (0..count as u32).collect();
-    let tree = tree_of_numbers(&mut numbers, &item_of, leaf_triangles, 0);
+    let tree = tree(&mut numbers, &box_of, leaf_triangles, 0);
     let mut branches = Vec::new();
     flatten(&tree, 0, 0, &mut branches);
     (branches, numbers)
-}
-
-/// While there are many, boxes are found again each time, to save memory.
-fn tree_of_numbers<F>(numbers: &mut [u32], item_of: &F, leaf_triangles: usize, level: u32) -> Tree
-where
-    F: Fn(&u32) -> Item + Sync,
-{
-    if numbers.len() > WITH_BOXES {
-        let below =
-            |numbers: &mut [u32], level| tree_of_numbers(numbers, item_of, leaf_triangles, level);
-        return tree(numbers, item_of, leaf_triangles, level, &below);
-    }
-    let mut items: Vec<Item> = numbers.iter().map(item_of).collect();
-    let tree = tree_of_items(&mut items, leaf_triangles, level);
-    for (number, item) in numbers.iter_mut().zip(items) {
-        *number = item.number;
-    }
-    tree
-}
-
-fn tree_of_items(items: &mut [Item], leaf_triangles: usize, level: u32) -> Tree {
-    let below = |items: &mut [Item], level| tree_of_items(items, leaf_triangles, level);
-    tree(items, &|item: &Item| *item, leaf_triangles, level, &below)
 }
 
 fn flatten(tree: &Tree, level: u32, first: usize, branches: &mut Vec<Branch>) -> usize {
@@ -111,25 +74,22 @@ fn flatten(tree: &Tree, level: u32, first: usize, branches: &mut Vec<Branch>) ->
     place
 }
 
-fn tree<T, F, B>(items: &mut [T], item_of: &F, leaf_triangles: usize, level: u32, below: &B) -> Tree
-where
-    T: Copy + Send,
-    F: Fn(&T) -> Item + Sync,
-    B: Fn(&mut [T], u32) -> Tree + Sync,
-{
-    let all = items.iter().map(item_of).map(Slice::of);
-    let Slice { low, high, count } = all.fold(Slice::NONE, Slice::with);
+type BoxOf<'f> = dyn Fn(u32) -> Slice + Sync + 'f;
+
+fn tree(numbers: &mut [u32], box_of: &BoxOf<'_>, leaf_triangles: usize, level: u32) -> Tree {
+    let boxes = numbers.iter().map(|&number| box_of(number));
+    let Slice { low, high, count } = boxes.fold(Slice::NONE, Slice::with);
     let halves = (count >= leaf_triangles && count > 1).then(|| {
         let middle = match level < MOST_LEVELS {
-            true => partition(items, item_of),
+            true => partition(numbers, box_of),
             false => count / 2,
         };
-        let (near, far) = items.split_at_mut(middle);
-        let next = level + 1;
+        let (near, far) = numbers.split_at_mut(middle);
+        let below = |numbers| tree(numbers, box_of, leaf_triangles, level + 1);
         let (near, far) = if count >= PARALLEL {
-            rayon::join(|| below(near, next), || below(far, next))
+            rayon::join(|| below(near), || below(far))
         } else {
-            (below(near, next), below(far, next))
+            (below(near), below(far))
         };
         Box::new([near, far])
     });
@@ -155,12 +115,8 @@ impl Slice {
         count: 0,
     };
 
-    fn of(item: Item) -> Self {
-        Self {
-            low: item.low,
-            high: item.high,
-            count: 1,
-        }
+    fn middle(&self) -> DVec3 {
+        (self.low + self.high) * 0.5
     }
 
     fn with(self, other: Self) -> Self {
@@ -178,13 +134,14 @@ impl Slice {
     }
 }
 
-fn partition<T: Copy>(items: &mut [T], item_of: &impl Fn(&T) -> Item) -> usize {
-    let (low, high) = bounds(items.iter().map(|item| item_of(item).middle()));
+fn partition(numbers: &mut [u32], box_of: &BoxOf<'_>) -> usize {
+    let boxes = || numbers.iter().map(|&number| box_of(number));
+    let (low, high) = bounds(boxes().map(|of| of.middle()));
     let mut all = [[Slice::NONE; SLICES]; 3];
-    for item in items.iter().map(item_of) {
+    for of in boxes() {
         for (axis, slices) in all.iter_mut().enumerate() {
-            let slice = &mut slices[slice_of(axis, low, high, &item)];
-            *slice = slice.with(Slice::of(item));
+            let slice = &mut slices[slice_of(axis, low, high, &of)];
+            *slice = slice.with(of);
         }
     }
     let mut best: Option<(f64, usize, usize)> = None;
@@ -211,18 +168,18 @@ fn partition<T: Copy>(items: &mut [T], item_of: &impl Fn(&T) -> Item) -> usize {
         }
     }
     let Some((_, axis, plane)) = best else {
-        return items.len() / 2;
+        return numbers.len() / 2;
     };
     // Stable, so that the order does not depend on how it is done.
-    let is_near = |item: &&T| slice_of(axis, low, high, &item_of(item)) < plane;
-    let (near, far): (Vec<T>, Vec<T>) = items.iter().partition(is_near);
-    items[..near.len()].copy_from_slice(&near);
-    items[near.len()..].copy_from_slice(&far);
+    let is_near = |&&number: &&u32| slice_of(axis, low, high, &box_of(number)) < plane;
+    let (near, far): (Vec<u32>, Vec<u32>) = numbers.iter().partition(is_near);
+    numbers[..near.len()].copy_from_slice(&near);
+    numbers[near.len()..].copy_from_slice(&far);
     near.len()
 }
 
-fn slice_of(axis: usize, low: DVec3, high: DVec3, item: &Item) -> usize {
+fn slice_of(axis: usize, low: DVec3, high: DVec3, of: &Slice) -> usize {
     let scale = SLICES as f64 / (high[axis] - low[axis]);
-    let slice = ((item.middle()[axis] - low[axis]) * scale) as usize;
+    let slice = ((of.middle()[axis] - low[axis]) * scale) as usize;
     slice.min(SLICES - 1)
 }

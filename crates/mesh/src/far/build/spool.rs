@@ -2,6 +2,7 @@
 //!
 //! After a key of mesh and options follow the nodes: number, record and data, with checksums.
 
+use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use bytemuck::{Pod, Zeroable};
@@ -11,11 +12,11 @@ use crate::far::record::Node;
 
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-struct Head {
+pub(super) struct Head {
     number: u32,
-    is_undecimated: u32,
-    bytes: u64,
-    node: Node,
+    pub(super) is_undecimated: u32,
+    pub(super) bytes: u64,
+    pub(super) node: Node,
     /// Of all before.
     checksum: u64,
 }
@@ -29,14 +30,6 @@ impl Head {
     }
 }
 
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Done {
-    pub(super) node: Node,
-    pub(super) bytes: u64,
-    pub(super) is_undecimated: bool,
-    at: u64,
-}
-
 /// A finished node.
 pub(super) struct Made {
     pub(super) node: Node,
@@ -46,17 +39,18 @@ pub(super) struct Made {
 }
 
 #[derive(Debug)]
-pub(super) struct Spool<F> {
-    file: F,
+pub(super) struct Spool {
+    file: File,
     end: u64,
-    done: Vec<Option<Done>>,
+    /// Finished nodes, and where the data of each begins.
+    done: Vec<Option<(Head, u64)>>,
     /// The number of nodes that were added to those in the file.
     added: usize,
 }
 
-impl<F: Read + Write + Seek> Spool<F> {
+impl Spool {
     /// Takes the nodes that are whole in a file, and writes on behind them. `None`: the file has another key.
-    pub(super) fn open(mut file: F, key: u64, nodes: usize) -> io::Result<Option<Self>> {
+    pub(super) fn open(mut file: File, key: u64, nodes: usize) -> io::Result<Option<Self>> {
         let mut first = [0; 8];
         let length = file.seek(SeekFrom::End(0))?;
         file.rewind()?;
@@ -101,12 +95,7 @@ impl<F: Read + Write + Seek> Spool<F> {
 
     fn note(&mut self, head: &Head) {
         let at = self.end + HEAD;
-        self.done[head.number as usize] = Some(Done {
-            node: head.node,
-            bytes: head.bytes,
-            is_undecimated: head.is_undecimated != 0,
-            at,
-        });
+        self.done[head.number as usize] = Some((*head, at));
         self.end = at + head.bytes;
     }
 
@@ -132,8 +121,8 @@ impl<F: Read + Write + Seek> Spool<F> {
         Ok(())
     }
 
-    pub(super) fn nodes(&self) -> impl Iterator<Item = Done> {
-        self.done.iter().flatten().copied()
+    pub(super) fn nodes(&self) -> impl Iterator<Item = &Head> {
+        self.done.iter().flatten().map(|(head, _)| head)
     }
 
     /// The number of nodes that were in the file.
@@ -149,11 +138,11 @@ impl<F: Read + Write + Seek> Spool<F> {
     /// Fails where the file is no longer as it was written.
     pub(super) fn copy_to(&mut self, out: &mut dyn Write) -> io::Result<()> {
         let mut data = Vec::new();
-        for done in self.done.iter().flatten() {
-            data.resize(done.bytes as usize, 0);
-            self.file.seek(SeekFrom::Start(done.at))?;
+        for (head, at) in self.done.iter().flatten() {
+            data.resize(head.bytes as usize, 0);
+            self.file.seek(SeekFrom::Start(*at))?;
             self.file.read_exact(&mut data)?;
-            if xxh3_64(&data) != done.node.checksum {
+            if xxh3_64(&data) != head.node.checksum {
                 let told = "the file of unfinished nodes has changed";
                 return Err(io::Error::new(io::ErrorKind::InvalidData, told));
             }

@@ -118,7 +118,7 @@ impl<'s> Surfaces<'s> {
             .clone()
             .zip(&all)
             .map(|(place, triangle)| {
-                let width = f64::from(self.parts.size(place).width);
+                let width = f64::from(self.parts.sizes[place].width);
                 Kind {
                     is_thin: width < THIN * f64::from(node.voxel),
                     is_painted: triangle.paint != Paint::NONE,
@@ -231,7 +231,7 @@ impl<'s> Surfaces<'s> {
         };
         // Small parts are left out whole.
         let is_seen =
-            |place: usize, error: f64| f64::from(self.parts.size(place).radius) >= error * voxel;
+            |place: usize, error: f64| f64::from(self.parts.sizes[place].radius) >= error * voxel;
         let candidate = |parts: &[&[LeafTriangle]]| Candidate {
             node: *node,
             lists: Default::default(),

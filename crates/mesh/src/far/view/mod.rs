@@ -21,7 +21,7 @@ use opaque::Opaque;
 pub struct ViewOptions {
     /// Largest projected side of a voxel, pixels, above 0.
     pub voxel_px: f64,
-    /// Samples of a pixel along each axis, 1 to 16.
+    /// Samples of a pixel along each axis, 1 to 16: fewer or more count as these.
     pub samples_across: u32,
     pub opacity: Opacity,
     /// `None` for unlit colours.

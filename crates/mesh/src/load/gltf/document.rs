@@ -1,10 +1,9 @@
 //! The parts of a glTF document that are read.
 
 use std::collections::HashMap;
-use std::fmt;
 
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, IgnoredAny, MapAccess, Visitor};
+use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::{broken, fault_of};
@@ -81,12 +80,14 @@ pub(super) struct NodeExtensions {
     pub(super) instances: Option<Instances>,
 }
 
+/// Accessors by their names. Some exporters write `null` for an attribute that is not there.
+pub(super) type Attributes = HashMap<String, Option<usize>>;
+
 /// Accessors of `TRANSLATION`, `ROTATION` and `SCALE` of each instance.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Instances {
-    #[serde(deserialize_with = "attributes")]
-    pub(super) attributes: HashMap<String, usize>,
+    pub(super) attributes: Attributes,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -98,8 +99,7 @@ pub(super) struct Mesh {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Primitive {
-    #[serde(deserialize_with = "attributes")]
-    pub(super) attributes: HashMap<String, usize>,
+    pub(super) attributes: Attributes,
     pub(super) indices: Option<usize>,
     pub(super) material: Option<usize>,
     pub(super) mode: Option<u32>,
@@ -275,28 +275,4 @@ impl Document {
             None => broken(part, number, expected, "none"),
         }
     }
-}
-
-/// Accessors by their names. Some exporters write `null` for an attribute that is not there.
-fn attributes<'de, D: Deserializer<'de>>(from: D) -> Result<HashMap<String, usize>, D::Error> {
-    struct Attributes;
-    impl<'de> Visitor<'de> for Attributes {
-        type Value = HashMap<String, usize>;
-
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str("accessors by the names of attributes")
-        }
-
-        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-            let mut found = HashMap::new();
-            while let Some((name, accessor)) = map.next_entry::<String, Option<usize>>()? {
-                if found.contains_key(&name) {
-                    return Err(A::Error::custom(format!("two attributes {name}")));
-                }
-                found.extend(accessor.map(|accessor| (name, accessor)));
-            }
-            Ok(found)
-        }
-    }
-    from.deserialize_map(Attributes)
 }

@@ -28,7 +28,7 @@ const BIN: usize = 0x004e_4942;
 
 pub(super) fn read_json(
     bytes: &[u8],
-    beside: &dyn Beside,
+    beside: &Beside<'_>,
     builder: &mut MeshBuilder,
 ) -> Result<(), Problem> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -37,7 +37,7 @@ pub(super) fn read_json(
 
 pub(super) fn read_binary(
     bytes: &[u8],
-    beside: &dyn Beside,
+    beside: &Beside<'_>,
     builder: &mut MeshBuilder,
 ) -> Result<(), Problem> {
     let wrong = |part: &str, offset: usize, expected: &str, found: usize| -> Problem {
@@ -87,7 +87,7 @@ fn read_document(
     json: &[u8],
     offset: u64,
     binary: Option<&[u8]>,
-    beside: &dyn Beside,
+    beside: &Beside<'_>,
     builder: &mut MeshBuilder,
 ) -> Result<(), Problem> {
     let document: Document = serde_json::from_slice(json).map_err(|error| {
@@ -111,7 +111,7 @@ impl<'f> Buffers<'f> {
     fn read(
         document: &Document,
         binary: Option<&'f [u8]>,
-        beside: &dyn Beside,
+        beside: &Beside<'_>,
     ) -> Result<Self, Problem> {
         let (mut by_number, mut total) = (Vec::new(), 0);
         let mut known: HashMap<&str, Rc<Cow<'f, [u8]>>> = HashMap::new();
@@ -154,13 +154,13 @@ fn decoded(uri: &str) -> Option<Vec<u8>> {
     STANDARD_NO_PAD.decode(text).ok()
 }
 
-fn fetch(uri: &str, number: usize, beside: &dyn Beside) -> Result<Vec<u8>, Problem> {
+fn fetch(uri: &str, number: usize, beside: &Beside<'_>) -> Result<Vec<u8>, Problem> {
     if uri.starts_with("data:") {
         let other = || broken("buffer", number, "data in base64", "other data");
         return decoded(uri).ok_or_else(other);
     }
     let name = unescaped(uri);
-    beside.read(&name).map_err(|error| {
+    beside(&name).map_err(|error| {
         let expected = format!("the file {name:?} beside the mesh");
         let advice = "put it into the same folder, or export as .glb";
         fault_of("buffer", number, &expected, &error.to_string(), advice)

@@ -45,7 +45,7 @@ fn wrap(number: u32) -> Wrap {
 pub(super) fn find(
     document: &Document,
     buffers: &Buffers<'_>,
-    beside: &dyn Beside,
+    beside: &Beside<'_>,
     (texture, mode): (usize, AlphaMode),
     textures: &mut Textures,
 ) -> Option<Arc<Texture>> {
@@ -72,7 +72,7 @@ pub(super) fn find(
             missing(&format!("it has no PNG or JPEG picture{other}"))
         })?;
         match (&file, uri) {
-            (Some(file), _) => beside.read(file),
+            (Some(file), _) => beside(file),
             (None, Some(uri)) => decoded(uri).ok_or_else(|| missing("its data is not in base64")),
             (None, None) => {
                 let view = image.buffer_view.and_then(|v| document.buffer_views.get(v));

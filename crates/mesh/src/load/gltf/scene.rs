@@ -1,6 +1,6 @@
 //! From a glTF document's nodes to triangles in world coordinates.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use glam::{DMat4, DQuat, DVec3};
 
@@ -16,22 +16,18 @@ use crate::texture::AlphaMode;
 use crate::{ColorSpace, Material, MeshBuilder};
 
 /// Triangles that a document may always have, besides those that its length justifies.
-const FREE_TRIANGLES: u64 = 100_000;
+const FREE_TRIANGLES: usize = 100_000;
 /// Triangles that a byte of file and buffers justifies: nodes may show a mesh many times.
-const TRIANGLES_A_BYTE: u64 = 16;
-
-struct Sizes<'d> {
-    mode: u32,
-    positions: Numbers<'d>,
-    indices: Option<Numbers<'d>>,
-    triangles: usize,
-}
+const TRIANGLES_A_BYTE: usize = 16;
 
 pub(super) struct Reader<'d> {
     document: &'d Document,
     buffers: &'d Buffers<'d>,
-    beside: &'d dyn Beside,
-    most: u64,
+    beside: &'d Beside<'d>,
+    most: usize,
+    /// Positions, triangles and primitives so far. Positions count because they take memory, primitives because they take
+    /// time.
+    used: usize,
     skipped_modes: u64,
     morphed: u64,
     skinned: u64,
@@ -46,7 +42,7 @@ impl<'d> Reader<'d> {
     pub(super) fn new(
         document: &'d Document,
         buffers: &'d Buffers<'d>,
-        beside: &'d dyn Beside,
+        beside: &'d Beside<'d>,
         json_bytes: usize,
     ) -> Self {
         let bytes = json_bytes + buffers.bytes;
@@ -54,7 +50,8 @@ impl<'d> Reader<'d> {
             document,
             buffers,
             beside,
-            most: FREE_TRIANGLES + TRIANGLES_A_BYTE * bytes as u64,
+            most: FREE_TRIANGLES + TRIANGLES_A_BYTE * bytes,
+            used: 0,
             skipped_modes: 0,
             morphed: 0,
             skinned: 0,
@@ -77,7 +74,6 @@ impl<'d> Reader<'d> {
             }
         }
         let shown = self.shown()?;
-        self.make_room(&shown, builder)?;
         for (number, placed) in shown {
             for primitive in &self.mesh(number)?.primitives {
                 self.primitive(number, primitive, placed, builder)?;
@@ -149,8 +145,8 @@ impl<'d> Reader<'d> {
                 match &node.extensions.instances {
                     None => shown.push((mesh, placed)),
                     Some(instances) => {
-                        let instances = self
-                            .instances(instances, self.most.saturating_sub(shown.len() as u64))?;
+                        let room = self.most.saturating_sub(shown.len());
+                        let instances = self.instances(instances, room)?;
                         shown.extend(instances.map(|instance| (mesh, placed * instance)));
                     }
                 }
@@ -164,11 +160,11 @@ impl<'d> Reader<'d> {
     fn instances(
         &self,
         instances: &Instances,
-        most: u64,
+        most: usize,
     ) -> Result<impl Iterator<Item = DMat4> + use<'d>, Problem> {
         let find = |name: &str| {
-            let accessor = instances.attributes.get(name);
-            accessor.map(|&accessor| self.numbers(accessor)).transpose()
+            let accessor = instances.attributes.get(name).copied().flatten();
+            accessor.map(|a| self.numbers(a)).transpose()
         };
         let [moves, turns, scales] = [find("TRANSLATION")?, find("ROTATION")?, find("SCALE")?];
         let counts = [&moves, &turns, &scales]
@@ -176,7 +172,7 @@ impl<'d> Reader<'d> {
             .flatten()
             .map(|n| n.count);
         let count = counts.max().unwrap_or(0);
-        if count as u64 > most {
+        if count > most {
             return Err(too_many());
         }
         Ok((0..count).map(move |at| {
@@ -196,62 +192,12 @@ impl<'d> Reader<'d> {
         mesh.ok_or_else(|| broken("mesh", number, "a mesh of this number", "none"))
     }
 
-    fn make_room(
-        &self,
-        shown: &[(usize, DMat4)],
-        builder: &mut MeshBuilder,
-    ) -> Result<(), Problem> {
-        let mut of_mesh: HashMap<usize, [usize; 3]> = HashMap::new();
-        let mut sum = [0; 3];
-        for &(mesh, _) in shown {
-            let size = match of_mesh.get(&mesh) {
-                Some(&known) => known,
-                None => *of_mesh.entry(mesh).or_insert(self.size_of(mesh)?),
-            };
-            sum = [0, 1, 2].map(|k| size[k].saturating_add(sum[k]));
-            // Positions count as triangles: they take memory too. Also a primitive without any takes time.
-            let all = sum.into_iter().fold(0, usize::saturating_add);
-            if all as u64 > self.most {
-                return Err(too_many());
-            }
+    fn count(&mut self, more: usize) -> Result<(), Problem> {
+        self.used = self.used.saturating_add(more);
+        match self.used <= self.most {
+            true => Ok(()),
+            false => Err(too_many()),
         }
-        let room = builder.reserve(sum[0], sum[1]);
-        room.map_err(|short| too_large("memory for all triangles".to_owned(), short.to_string()))
-    }
-
-    /// Positions, triangles and primitives of a mesh.
-    fn size_of(&self, mesh: usize) -> Result<[usize; 3], Problem> {
-        let primitives = &self.mesh(mesh)?.primitives;
-        let mut sum = [0, 0, primitives.len()];
-        for primitive in primitives {
-            if let Some(of) = self.sizes(primitive)? {
-                sum[0] = of.positions.count.saturating_add(sum[0]);
-                sum[1] = of.triangles.saturating_add(sum[1]);
-            }
-        }
-        Ok(sum)
-    }
-
-    fn sizes(&self, primitive: &Primitive) -> Result<Option<Sizes<'d>>, Problem> {
-        let mode = primitive.mode.unwrap_or(4);
-        if !(4..=6).contains(&mode) {
-            return Ok(None);
-        }
-        let Some(positions) = self.attribute(primitive, "POSITION")? else {
-            return Ok(None);
-        };
-        let indices = primitive.indices.map(|a| self.numbers(a)).transpose()?;
-        let corners = indices.as_ref().map_or(positions.count, |i| i.count);
-        let triangles = match mode {
-            4 => corners / 3,
-            _ => corners.saturating_sub(2),
-        };
-        Ok(Some(Sizes {
-            mode,
-            positions,
-            indices,
-            triangles,
-        }))
     }
 
     /// The places of a primitive's vertices, if its material has a texture, which the builder gets.
@@ -290,8 +236,8 @@ impl<'d> Reader<'d> {
     }
 
     fn attribute(&self, primitive: &Primitive, name: &str) -> Result<Option<Numbers<'d>>, Problem> {
-        let accessor = primitive.attributes.get(name);
-        accessor.map(|&a| self.numbers(a)).transpose()
+        let accessor = primitive.attributes.get(name).copied().flatten();
+        accessor.map(|a| self.numbers(a)).transpose()
     }
 
     fn primitive(
@@ -301,16 +247,23 @@ impl<'d> Reader<'d> {
         placed: DMat4,
         builder: &mut MeshBuilder,
     ) -> Result<(), Problem> {
-        let Some(Sizes {
-            mode,
-            positions,
-            indices,
-            triangles,
-        }) = self.sizes(primitive)?
-        else {
+        self.count(1)?;
+        let mode = primitive.mode.unwrap_or(4);
+        let positions = match mode {
+            4..=6 => self.attribute(primitive, "POSITION")?,
+            _ => None,
+        };
+        let Some(positions) = positions else {
             self.skipped_modes += 1;
             return Ok(());
         };
+        let indices = primitive.indices.map(|a| self.numbers(a)).transpose()?;
+        let corners = indices.as_ref().map_or(positions.count, |i| i.count);
+        let triangles = match mode {
+            4 => corners / 3,
+            _ => corners.saturating_sub(2),
+        };
+        self.count(positions.count.saturating_add(triangles))?;
         self.morphed += u64::from(!primitive.targets.is_empty());
         let normals = self.attribute(primitive, "NORMAL")?;
         let colors = self.attribute(primitive, "COLOR_0")?;
@@ -403,14 +356,11 @@ fn placed(scale: DVec3, turn: DQuat, moved: DVec3) -> DMat4 {
 }
 
 fn too_many() -> Problem {
-    too_large(
-        format!("at most {TRIANGLES_A_BYTE} triangles for a byte of the file"),
-        "more: they show meshes very often".to_owned(),
-    )
-}
-
-fn too_large(expected: String, found: String) -> Problem {
-    let advice = "export a part of the scene";
+    let expected = format!("at most {TRIANGLES_A_BYTE} triangles for a byte of the file");
+    let (found, advice) = (
+        "more: they show meshes very often",
+        "export a part of the scene",
+    );
     Problem::Limit(Fault::new("nodes", Place::Whole, expected, found, advice))
 }
 
