@@ -17,7 +17,7 @@ use shiftvox::drawing::milliseconds_since;
 use shiftvox::project::Up;
 use shiftvox::whole;
 use shiftvox_mesh::far::build::Outside;
-use shiftvox_mesh::far::record::{LISTS, Node, OPACITY_BYTES, OpacityKind, ShaderKind};
+use shiftvox_mesh::far::record::{Node, OPACITY_BYTES};
 use shiftvox_mesh::far::{BuildError, FarFile, build_outside};
 use shiftvox_mesh::{Instances, ListFolder};
 
@@ -203,11 +203,8 @@ fn describe(file: &FarFile, name: &str) -> Value {
     let untested = sum(&|n| n.untested.into());
     let per_voxel = |count: u64| count as f64 / kept.max(1) as f64;
     let list = |number: usize| sum(&|n| n.counts[number].into());
-    let share = |has: &dyn Fn(ShaderKind, OpacityKind) -> bool| {
-        let having = (0..LISTS.len()).filter(|&number| has(LISTS[number].0, LISTS[number].1));
-        per_voxel(having.map(list).sum())
-    };
-    let opacity = |kind| share(&|_, opacity| opacity == kind);
+    // Lists are of flat and of complex shaders, each with three kinds of opacities.
+    let share = |lists: &[usize]| per_voxel(lists.iter().map(|&number| list(number)).sum());
     let surface = |n: &Node| if n.is_leaf() { 0 } else { u64::from(n.surface) };
     let occluded = touched - kept;
     let last = nodes.iter().map(|n| n.level).max().unwrap_or(0);
@@ -247,13 +244,13 @@ fn describe(file: &FarFile, name: &str) -> Value {
         "rays": sum(&|n| n.rays.into()),
         "rays_hit": sum(&|n| n.hits.into()),
         "rays_per_voxel": per_voxel(sum(&|n| n.crossings.into())),
-        "opaque_share": opacity(OpacityKind::Opaque),
-        "scalar_share": opacity(OpacityKind::Scalar),
-        "six_share": opacity(OpacityKind::Six),
-        "complex_share": share(&|shader, _| shader == ShaderKind::Complex),
+        "opaque_share": share(&[0, 3]),
+        "scalar_share": share(&[1, 4]),
+        "six_share": share(&[2, 5]),
+        "complex_share": share(&[3, 4, 5]),
         "bytes": file.file_bytes(),
         "voxel_bytes": sum(&Node::voxel_bytes),
-        "opacity_bytes": (0..LISTS.len()).map(|n| list(n) * OPACITY_BYTES[n] as u64).sum::<u64>(),
+        "opacity_bytes": (0..6).map(|n| list(n) * OPACITY_BYTES[n] as u64).sum::<u64>(),
         "surface_triangles": sum(&surface),
         "surface_bytes": sum(&Node::surface_bytes),
         "texture_bytes": file.texture_bytes(),

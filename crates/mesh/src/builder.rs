@@ -13,15 +13,6 @@ use super::{Material, Mesh, Surface, Texture, Triangle};
 
 const MOST: usize = u32::MAX as usize;
 
-/// A triangle names a position that does not exist.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct BadIndex {
-    /// The index that is out of range.
-    pub index: u32,
-    /// Positions that there are.
-    pub positions: usize,
-}
-
 /// Collects positions and triangles and leaves out what cannot be drawn.
 ///
 /// Left out, with a warning: triangles with a coordinate that is not finite, without area, or of a material with opacity
@@ -124,13 +115,13 @@ impl MeshBuilder {
     /// Adds a triangle, with or without normals of its corners. A material that does not exist is taken for the first.
     ///
     /// # Errors
-    /// [`BadIndex`] where a position does not exist; the triangle is not added.
+    /// The number of a position that does not exist; the triangle is not added.
     pub fn triangle(
         &mut self,
         corners: [u32; 3],
         normals: Option<[[f32; 3]; 3]>,
         material: u32,
-    ) -> Result<(), BadIndex> {
+    ) -> Result<(), u32> {
         self.textured_triangle(corners, normals, material, None)
     }
 
@@ -145,10 +136,10 @@ impl MeshBuilder {
         normals: Option<[[f32; 3]; 3]>,
         material: u32,
         places: Option<[[f64; 2]; 3]>,
-    ) -> Result<(), BadIndex> {
+    ) -> Result<(), u32> {
         let positions = self.mesh.positions.len();
         if let Some(&index) = corners.iter().find(|&&i| i as usize >= positions) {
-            return Err(BadIndex { index, positions });
+            return Err(index);
         }
         self.seen += 1;
         let [a, b, c] = corners.map(|i| point(self.mesh.positions[i as usize]));
@@ -349,8 +340,7 @@ mod tests {
         }
         let bad = [[0.0; 3], [f32::NAN; 3], [0.0, 3.0, 0.0]];
         builder.triangle([0, 1, 2], Some(bad), 0).unwrap();
-        let error = builder.triangle([0, 1, 5], None, 0).unwrap_err();
-        assert_eq!((error.index, error.positions), (5, 5));
+        assert_eq!(builder.triangle([0, 1, 5], None, 0), Err(5));
         let mesh = builder.finish("a.obj").unwrap();
         assert_eq!(mesh.triangles(), [[0, 1, 2]; 2]);
         assert!(mesh.warnings()[0].starts_with("1 of 5 triangles with a coordinate"));

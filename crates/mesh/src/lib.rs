@@ -33,13 +33,11 @@ pub mod view_error;
 #[doc(hidden)]
 pub mod voxelize;
 
-use std::sync::Arc;
-
 use glam::DVec3;
 use list::List;
 pub use shiftvox::scene::{FileKind as MeshFormat, SceneError};
 
-pub use builder::{BadIndex, MeshBuilder};
+pub use builder::MeshBuilder;
 pub use geometry::barycentric;
 pub use list::ListFolder;
 pub use load::{Beside, no_files, read, same_folder};
@@ -128,14 +126,12 @@ impl Mesh {
             self.tints.bytes(),
         ];
         let lists: u64 = sizes.iter().map(|&size| size as u64).sum();
-        let mut textures: Vec<_> = self
-            .materials
-            .iter()
-            .filter_map(|m| m.texture.as_ref())
-            .collect();
-        textures.sort_unstable_by_key(|texture| Arc::as_ptr(texture));
-        textures.dedup_by_key(|texture| Arc::as_ptr(texture));
-        lists + textures.iter().map(|texture| texture.bytes()).sum::<u64>()
+        lists
+            + self
+                .textures()
+                .iter()
+                .map(|texture| texture.bytes())
+                .sum::<u64>()
     }
 }
 

@@ -13,14 +13,6 @@ use shiftvox::graph::PackedNormal;
 use shiftvox::graph::file::Stored;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ShaderKind {
-    /// One normal, and a colour for each side.
-    Flat,
-    /// A normal and a colour for each main direction.
-    Complex,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum OpacityKind {
     Opaque,
     /// One number for each side of its surface.
@@ -42,17 +34,8 @@ pub enum Opacity {
     Six,
 }
 
-/// The six lists of a node, in the order in which they are stored.
-pub const LISTS: [(ShaderKind, OpacityKind); 6] = [
-    (ShaderKind::Flat, OpacityKind::Opaque),
-    (ShaderKind::Flat, OpacityKind::Scalar),
-    (ShaderKind::Flat, OpacityKind::Six),
-    (ShaderKind::Complex, OpacityKind::Opaque),
-    (ShaderKind::Complex, OpacityKind::Scalar),
-    (ShaderKind::Complex, OpacityKind::Six),
-];
-
-/// Bytes of a voxel in each list: place 3, shader 8 or 30, opacities 0, 2 or 5.
+/// Bytes of a voxel in each of a node's lists, in the order in which they are stored: three of flat shaders and three of
+/// complex ones, with the three kinds of opacities. Place 3, shader 8 or 30, opacities 0, 2 or 5.
 pub const RECORD_BYTES: [usize; 6] = [11, 13, 16, 33, 35, 38];
 
 /// Bytes of the opacities in a voxel of each list.
@@ -198,7 +181,7 @@ fn six_bytes(opacity: &[f64; DIRECTIONS], place: [u8; 3]) -> [u8; 3] {
 }
 
 impl Voxel {
-    /// The list of [`LISTS`] that it belongs to.
+    /// The list that it belongs to.
     pub fn list(&self) -> usize {
         3 * usize::from(matches!(self.shader, Shader::Complex { .. })) + self.opacity_kind as usize
     }
@@ -221,23 +204,24 @@ impl Voxel {
 
     /// Reads a record of a list; its bytes may be any.
     pub fn read(list: usize, bytes: &[u8]) -> Self {
-        let (kind, opacity_kind) = LISTS[list];
-        let shader = match kind {
-            ShaderKind::Flat => Shader::Flat {
+        use OpacityKind::{Opaque, Scalar, Six};
+        let opacity_kind = [Opaque, Scalar, Six][list % 3];
+        let shader = match list < 3 {
+            true => Shader::Flat {
                 normal: normal_of(&bytes[3..5]),
                 colors: [color_of(&bytes[5..8]), color_of(&bytes[8..11])],
             },
-            ShaderKind::Complex => Shader::Complex {
+            false => Shader::Complex {
                 normals: std::array::from_fn(|k| normal_of(&bytes[3 + 2 * k..])),
                 colors: std::array::from_fn(|k| color_of(&bytes[15 + 3 * k..])),
             },
         };
         let bytes_of_opacity = &bytes[RECORD_BYTES[list] - OPACITY_BYTES[list]..];
         let (mut sides, mut opacity) = ([SideOpacity::OPAQUE; 2], [1.0; DIRECTIONS]);
-        if opacity_kind != OpacityKind::Opaque {
+        if opacity_kind != Opaque {
             sides = [0, 1].map(|side| SideOpacity::of(bytes_of_opacity[side]));
         }
-        if opacity_kind == OpacityKind::Six {
+        if opacity_kind == Six {
             let steps = |k: usize| bytes_of_opacity[2 + k / 2] >> (4 * (k % 2)) & 15;
             opacity = std::array::from_fn(|k| f64::from(steps(k)) / SIX_STEPS);
         }

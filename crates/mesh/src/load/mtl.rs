@@ -94,23 +94,19 @@ pub(super) fn read(bytes: &[u8], colors: ColorSpace) -> Library {
                 }
                 value.is_some()
             }
-            ("map_kd", Some(last)) => {
+            ("map_kd" | "map_d", Some(last)) => {
                 let found = picture(rest);
                 let is_understood = found.is_some();
                 if let Some((name, place)) = found {
-                    (last.pictures.color, last.pictures.place) = (Some(name), place);
-                }
-                is_understood
-            }
-            ("map_d", Some(last)) => {
-                let found = picture(rest);
-                let is_understood = found.is_some();
-                if let Some((name, place)) = found {
-                    last.pictures.opacity = Some(name);
+                    let is_color = key == "map_kd";
                     // One place serves both pictures.
-                    if last.pictures.color.is_none() {
+                    if is_color || last.pictures.color.is_none() {
                         last.pictures.place = place;
                     }
+                    *(match is_color {
+                        true => &mut last.pictures.color,
+                        false => &mut last.pictures.opacity,
+                    }) = Some(name);
                 }
                 is_understood
             }

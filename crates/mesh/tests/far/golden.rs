@@ -2,7 +2,7 @@
 #![cfg(target_arch = "x86_64")]
 
 use shiftvox::graph::Silent;
-use shiftvox_mesh::far::record::LISTS;
+use shiftvox_mesh::far::record::RECORD_BYTES;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
@@ -34,7 +34,7 @@ const PICTURES: [(f64, f64, f64, u32, Opacity, u32); 6] = [
 #[test]
 fn files_and_pictures_have_their_hashes_on_any_number_of_threads() {
     let meshes = [city(false), generate(Kind::Village, 3)];
-    let mut counts = [0; LISTS.len()];
+    let mut counts = [0; RECORD_BYTES.len()];
     let mut files = Vec::new();
     for (number, row) in FILES.into_iter().enumerate() {
         let (hybrid, rays, grid, leaf_triangles, expected) = row;

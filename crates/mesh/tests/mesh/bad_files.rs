@@ -111,14 +111,17 @@ fn errors_name_the_fault_and_its_place() {
 
 #[test]
 fn a_small_gltf_file_cannot_fill_the_memory() {
-    // A thousand nodes show a thousand squares each.
-    let mut json = square_json();
-    json["nodes"] = json!(vec![json!({"mesh": 0}); 1000]);
-    json["scenes"] = json!([{"nodes": (0..1000).collect::<Vec<u32>>()}]);
-    let primitives = &mut json["meshes"][0]["primitives"];
-    *primitives = json!(vec![primitives[0].clone(); 1000]);
-    let error = load(json.to_string().as_bytes(), Gltf).unwrap_err();
-    assert!(error.is_limit(), "{error}");
+    // Two thousand nodes show two thousand squares, or parts that are passed over, each.
+    for mode in [4, 0] {
+        let mut json = square_json();
+        json["nodes"] = json!(vec![json!({"mesh": 0}); 2000]);
+        json["scenes"] = json!([{"nodes": (0..2000).collect::<Vec<u32>>()}]);
+        let primitives = &mut json["meshes"][0]["primitives"];
+        primitives[0]["mode"] = json!(mode);
+        *primitives = json!(vec![primitives[0].clone(); 2000]);
+        let error = load(json.to_string().as_bytes(), Gltf).unwrap_err();
+        assert!(error.is_limit(), "{error}");
+    }
 }
 
 /// Numbers, or values in place of them.

@@ -145,13 +145,6 @@ impl Layer {
     }
 }
 
-pub(super) struct Marks<'m> {
-    pub(super) slot: &'m [u32],
-    pub(super) kept: &'m [u32],
-    /// 0 of a voxel that is not kept, else one more than the probes aimed at it.
-    pub(super) aimed: &'m [u8],
-}
-
 pub(super) struct Probes<'p> {
     target: &'p Target<'p>,
     shots: &'p [Shot],
@@ -160,11 +153,14 @@ pub(super) struct Probes<'p> {
 }
 
 impl<'p> Probes<'p> {
+    /// By voxel of the grid, its number if it is touched, and 0 or one more than the probes aimed at it if it is kept. By
+    /// touched voxel, its number among the `count` kept ones.
     pub(super) fn new(
         target: &'p Target<'p>,
         shots: &'p [Shot],
-        marks: &Marks<'_>,
-        kept: usize,
+        [slot, kept]: [&[u32]; 2],
+        aimed: &[u8],
+        count: usize,
     ) -> Self {
         let mut weights = Vec::with_capacity(shots.len());
         let mut all = Vec::new();
@@ -176,13 +172,13 @@ impl<'p> Probes<'p> {
             let (from, direction) = (shot.point.as_dvec3(), shot.direction.as_dvec3());
             let is_passed = target.leaves_out(shot.triangle);
             target.grid.along(from, direction, |number, leave| {
-                let aimed = marks.aimed[number];
+                let aimed = aimed[number];
                 if aimed > 0 {
                     aims += u32::from(aimed - 1);
-                    let touched = marks.slot[number];
+                    let touched = slot[number];
                     let is_end = touched == shot.touched;
                     if !is_over && (is_end || is_passed || leave <= end) {
-                        all.push((marks.kept[touched as usize], probe));
+                        all.push((kept[touched as usize], probe));
                     }
                     is_over |= is_end || leave > end;
                 }
@@ -194,7 +190,7 @@ impl<'p> Probes<'p> {
             target,
             shots,
             weights,
-            crossings: Groups::new(kept, &all),
+            crossings: Groups::new(count, &all),
         }
     }
 

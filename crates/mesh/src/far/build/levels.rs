@@ -69,7 +69,11 @@ pub(super) fn rays(
     };
     let touched: Vec<Option<Touches>> = branches.par_iter().enumerate().map(touched).collect();
     if !keeps_nodes {
-        leave_out(&mut has_voxels, branches, &touched, coarser);
+        let counted = branches.iter().zip(&touched).zip(&mut has_voxels);
+        for ((branch, touched), has_voxels) in counted.skip(coarser + 1) {
+            let touched = touched.as_ref();
+            *has_voxels &= !touched.is_some_and(|n| is_left_out(n, branch.count));
+        }
     }
     progress.end();
     let voxels = |number: usize| match &touched[number] {
@@ -111,20 +115,6 @@ fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
         }
     }
     has_voxels
-}
-
-fn leave_out(
-    has_voxels: &mut [bool],
-    branches: &[Branch],
-    touched: &[Option<Touches>],
-    coarser: usize,
-) {
-    let counted = branches.iter().zip(touched).zip(has_voxels);
-    for ((branch, touched), has_voxels) in counted.skip(coarser + 1) {
-        *has_voxels &= !touched
-            .as_ref()
-            .is_some_and(|n| is_left_out(n, branch.count));
-    }
 }
 
 /// The fewest voxels along a node above another one. Thin tubes would lose area in larger voxels.

@@ -214,7 +214,7 @@ pub fn build_outside(
     let occluders = occluders.map_err(|e| failed(folder, &e))?;
     progress.end();
     let textures = Textures::new(surface.textures());
-    let surfaces = || Surfaces::new(surface, &order, centre, options, &branches, &textures);
+    let surfaces = || Surfaces::new(&triangles, options, &branches, &textures);
     let maker = Maker {
         options,
         triangles: &triangles,

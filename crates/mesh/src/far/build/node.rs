@@ -17,13 +17,10 @@ use super::split::Branch;
 use super::spool::Made;
 use super::surface::{MOST_TRIANGLES, Surfaces};
 use super::{BuildError, BuildOptions, failed};
-use crate::Surface;
-use crate::far::record::{LeafTriangle, Node};
+use crate::far::record::Node;
 use crate::far::store::pack::pack;
 use crate::far::store::surface::lay_out;
-use crate::material::to_srgb;
-use crate::texture::paint::{Paint, Textures};
-use shiftvox::graph::PackedNormal;
+use crate::texture::paint::Textures;
 
 pub(super) const MOST_RAYS: u32 = 1 << 22;
 /// Bytes per ray of a node that is sampled, or less: 40 of its own, and 20 per voxel that it crosses.
@@ -66,9 +63,7 @@ impl Maker<'_> {
             let data = match &self.surfaces {
                 Some(surfaces) => surfaces.leaf(&mut node, own),
                 None => {
-                    let from = self.triangles;
-                    let order = &from.order[own];
-                    let all = leaf_triangles(from.surface, order, from.centre, Some(self.textures));
+                    let all = self.triangles.stored(own, Some(self.textures));
                     pack(&Default::default(), &lay_out(&mut node, &all, |_| true))
                 }
             };
@@ -169,27 +164,4 @@ fn set_grid(node: &mut Node, grid: &Grid, scale: f64) {
     node.voxel = (grid.voxel / scale) as f32;
     node.cells = grid.cells;
     node.across = 2;
-}
-
-/// With `textures`, or else with the textures' colours at the corners.
-pub(super) fn leaf_triangles(
-    surface: &dyn Surface,
-    order: &[u32],
-    centre: DVec3,
-    textures: Option<&Textures>,
-) -> Vec<LeafTriangle> {
-    let leaf = |&number: &u32| {
-        let triangle = surface.triangle(number as usize);
-        let (paint, colors) = match textures {
-            Some(textures) => textures.paint(&triangle),
-            None => (Paint::NONE, triangle.corner_colors()),
-        };
-        LeafTriangle {
-            corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),
-            normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
-            colors: colors.map(to_srgb),
-            paint,
-        }
-    };
-    order.iter().map(leaf).collect()
 }

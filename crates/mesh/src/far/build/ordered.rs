@@ -4,8 +4,12 @@ use glam::DVec3;
 
 use super::count::SurfaceSample;
 use crate::Surface;
+use crate::far::record::LeafTriangle;
 use crate::geometry::{barycentric, plane_normal};
+use crate::material::to_srgb;
 use crate::surface::stops;
+use crate::texture::paint::{Paint, Textures};
+use shiftvox::graph::PackedNormal;
 
 pub(super) struct Ordered<'s> {
     pub(super) surface: &'s dyn Surface,
@@ -38,6 +42,31 @@ impl Ordered<'_> {
         let corners = triangle.corners.map(|p| self.place(p));
         let (_, opacity) = triangle.at(barycentric(&corners, point), 0.0);
         stops(opacity, point)
+    }
+
+    /// As they are stored, with `textures` or else with the textures' colours at the corners.
+    pub(super) fn stored(
+        &self,
+        numbers: impl Iterator<Item = usize>,
+        textures: Option<&Textures>,
+    ) -> Vec<LeafTriangle> {
+        let stored = |number: usize| {
+            let triangle = self.surface.triangle(self.order[number] as usize);
+            let (paint, colors) = match textures {
+                Some(textures) => textures.paint(&triangle),
+                None => (Paint::NONE, triangle.corner_colors()),
+            };
+            let corners = triangle
+                .corners
+                .map(|p| (p - self.centre).as_vec3().to_array());
+            LeafTriangle {
+                corners,
+                normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
+                colors: colors.map(to_srgb),
+                paint,
+            }
+        };
+        numbers.map(stored).collect()
     }
 
     /// Normal and colour at a point. The colour is the mean of a square of that side.

@@ -4,7 +4,7 @@ use std::io;
 
 use glam::DVec3;
 
-use super::count::{FOLLOWED, Groups, Layer, Marks, Probes, Seen, main_normal};
+use super::count::{FOLLOWED, Groups, Layer, Probes, Seen, main_normal};
 use super::ordered::Ordered;
 use super::shader_fit::{ShaderFit, fit_shader};
 use super::shot::{Aim, NOWHERE, Shot, Target};
@@ -102,12 +102,9 @@ impl Target<'_> {
                 aimed_of_grid[voxel.number as usize] = probes + 1;
             }
         }
-        let marks = Marks {
-            slot: found.slot,
-            kept: &kept,
-            aimed: &aimed_of_grid,
-        };
-        let probes = Probes::new(self, &shots[first_probe..], &marks, count);
+        let slot_and_kept = [found.slot, &kept];
+        let probes = &shots[first_probe..];
+        let probes = Probes::new(self, probes, slot_and_kept, &aimed_of_grid, count);
         let ends = (0u32..).zip(shots);
         let ends = ends.filter(|(_, shot)| shot.touched != NOWHERE);
         let ends = ends.map(|(number, shot)| (kept[shot.touched as usize], number));
@@ -181,56 +178,6 @@ impl Target<'_> {
     }
 }
 
-struct Prober<'p> {
-    target: &'p Target<'p>,
-    aims: &'p [u32],
-    directions: Vec<Directions>,
-    chance: &'p mut SplitMix,
-}
-
-impl Prober<'_> {
-    fn probe(
-        &mut self,
-        wanted: impl Fn(usize) -> u32,
-        most: u32,
-        aimed: &mut [u32],
-        found: &mut Found<'_>,
-    ) -> io::Result<()> {
-        let mut rays = Vec::new();
-        let mut is_done = self.aims.is_empty();
-        'turns: while !is_done {
-            is_done = true;
-            for (&aim, directions) in self.aims.iter().zip(&self.directions) {
-                let aim = aim as usize;
-                if aimed[aim] >= wanted(aim) {
-                    continue;
-                }
-                if rays.len() >= most as usize {
-                    break 'turns;
-                }
-                is_done = false;
-                let direction = directions.at(aimed[aim]);
-                aimed[aim] += 1;
-                let place = self.target.grid.place(found.touched[aim].number as usize);
-                rays.push(Aim {
-                    point: entry(place, direction, self.chance).as_vec3(),
-                    direction: direction.as_vec3(),
-                });
-            }
-        }
-        let begin = found.shots.len();
-        let beyond = point(self.target.grid.cells).length() + FOLLOWED;
-        self.target
-            .shoot(&rays, beyond, found.slot, &mut found.shots)?;
-        for shot in &found.shots[begin..] {
-            if shot.touched != NOWHERE {
-                found.is_seen[shot.touched as usize] = true;
-            }
-        }
-        Ok(())
-    }
-}
-
 /// Voxels are numbered as they are touched.
 struct Found<'s> {
     touched: &'s [Touched],
@@ -281,16 +228,16 @@ impl Found<'_> {
         let aims: Vec<u32> = aims.collect();
         let left = most - begin as u32;
         let mut aimed = vec![0; self.touched.len()];
-        let mut prober = Prober {
-            target,
-            aims: &aims,
-            directions: aims.iter().map(|_| Directions::new(chance)).collect(),
-            chance,
+        let directions = aims.iter().map(|_| Directions::new(chance));
+        let directions: Vec<Directions> = directions.collect();
+        let aims: Vec<(u32, Directions)> = aims.into_iter().zip(directions).collect();
+        let mut shoot = |wanted: &dyn Fn(usize) -> u32, most, found: &mut Self| {
+            found.shoot_at(&aims, wanted, most, &mut aimed, target, chance)
         };
         match rays {
             Rays::PerVoxel(probes) => {
                 let first = FIRST_PROBES.min(probes);
-                prober.probe(|_| first, left, &mut aimed, self)?;
+                shoot(&|_| first, left, self)?;
                 let probed = &self.shots[begin..];
                 let crossings = target.crossings(probed, self.slot, self.touched.len());
                 let shot = probed.len() as u32;
@@ -298,14 +245,57 @@ impl Found<'_> {
                     let needed = (probes * first).div_ceil(crossings[number].max(1));
                     needed.clamp(LEAST_PROBES.min(probes), probes)
                 };
-                prober.probe(wanted, left - shot, &mut aimed, self)?;
+                shoot(&wanted, left - shot, self)?;
             }
             Rays::InAll(rays) => {
                 let probes = left.min(rays.saturating_sub(begin as u32));
-                prober.probe(|_| u32::MAX, probes, &mut aimed, self)?;
+                shoot(&|_| u32::MAX, probes, self)?;
             }
         }
         Ok(aimed)
+    }
+
+    /// Shoots at most `most` probes, at each voxel until so many are aimed at it as are wanted.
+    fn shoot_at(
+        &mut self,
+        aims: &[(u32, Directions)],
+        wanted: &dyn Fn(usize) -> u32,
+        most: u32,
+        aimed: &mut [u32],
+        target: &Target<'_>,
+        chance: &mut SplitMix,
+    ) -> io::Result<()> {
+        let mut rays = Vec::new();
+        let mut is_done = aims.is_empty();
+        'turns: while !is_done {
+            is_done = true;
+            for (aim, directions) in aims {
+                let aim = *aim as usize;
+                if aimed[aim] >= wanted(aim) {
+                    continue;
+                }
+                if rays.len() >= most as usize {
+                    break 'turns;
+                }
+                is_done = false;
+                let direction = directions.at(aimed[aim]);
+                aimed[aim] += 1;
+                let place = target.grid.place(self.touched[aim].number as usize);
+                rays.push(Aim {
+                    point: entry(place, direction, chance).as_vec3(),
+                    direction: direction.as_vec3(),
+                });
+            }
+        }
+        let begin = self.shots.len();
+        let beyond = point(target.grid.cells).length() + FOLLOWED;
+        target.shoot(&rays, beyond, self.slot, &mut self.shots)?;
+        for shot in &self.shots[begin..] {
+            if shot.touched != NOWHERE {
+                self.is_seen[shot.touched as usize] = true;
+            }
+        }
+        Ok(())
     }
 
     /// Returns the voxels newly seen, and along which direction.

@@ -5,11 +5,12 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::compare::{ACROSS, Candidate, Comparison, Judged};
-use super::node::leaf_triangles;
+use super::ordered::Ordered;
 use super::parts::Parts;
 use super::split::Branch;
 use super::spool::Made;
 use super::{BuildError, BuildOptions};
+use crate::Mesh;
 use crate::decimate::{DecimateError, Decimation, decimate_between};
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
@@ -17,7 +18,6 @@ use crate::far::store::surface;
 use crate::geometry::point;
 use crate::material::to_light;
 use crate::texture::paint::{Paint, Textures};
-use crate::{Mesh, Surface};
 use shiftvox::graph::PackedNormal;
 
 /// Parts narrower than so many voxels of a node are thin.
@@ -56,9 +56,7 @@ impl Kind {
 }
 
 pub(super) struct Surfaces<'s> {
-    surface: &'s dyn Surface,
-    order: &'s [u32],
-    centre: DVec3,
+    triangles: &'s Ordered<'s>,
     options: &'s BuildOptions,
     parts: Parts,
     /// Bytes of a node that cost nothing.
@@ -68,13 +66,17 @@ pub(super) struct Surfaces<'s> {
 
 impl<'s> Surfaces<'s> {
     pub(super) fn new(
-        surface: &'s dyn Surface,
-        order: &'s [u32],
-        centre: DVec3,
+        triangles: &'s Ordered<'s>,
         options: &'s BuildOptions,
         branches: &[Branch],
         textures: &'s Textures,
     ) -> Self {
+        let Ordered {
+            surface,
+            order,
+            centre,
+            ..
+        } = *triangles;
         let corners = |place: usize| {
             let corners = surface.corners(order[place] as usize);
             corners.map(|p| (p - centre).as_vec3().to_array())
@@ -83,9 +85,7 @@ impl<'s> Surfaces<'s> {
         let leaves = branches.iter().filter(|branch| branch.children.is_none());
         let leaves: Vec<usize> = leaves.map(|leaf| leaf.count).collect();
         Self {
-            surface,
-            order,
-            centre,
+            triangles,
             options,
             free: FREE_BYTES / branches.len() as f64,
             parts: Parts::of(&leaves, corners, normals),
@@ -94,15 +94,14 @@ impl<'s> Surfaces<'s> {
     }
 
     pub(super) fn leaf(&self, node: &mut Node, own: Range<usize>) -> Vec<u8> {
-        let bytes = surface::lay_out(node, &self.triangles(&own), |p| {
+        let bytes = surface::lay_out(node, &self.stored(&own), |p| {
             self.parts.shared(&own, p).is_some()
         });
         pack(&Default::default(), &bytes)
     }
 
-    fn triangles(&self, own: &Range<usize>) -> Vec<LeafTriangle> {
-        let order = &self.order[own.clone()];
-        leaf_triangles(self.surface, order, self.centre, Some(self.textures))
+    fn stored(&self, own: &Range<usize>) -> Vec<LeafTriangle> {
+        self.triangles.stored(own.clone(), Some(self.textures))
     }
 
     /// An inner node, whose grid is set, and its bytes. `voxels` makes voxels of some triangles.
@@ -112,7 +111,7 @@ impl<'s> Surfaces<'s> {
         own: Range<usize>,
         voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
     ) -> Result<Made, BuildError> {
-        let all = self.triangles(&own);
+        let all = self.stored(&own);
         let comparison = self.comparison(node, &all, ACROSS)?;
         let kinds: Vec<Kind> = own
             .clone()
@@ -278,14 +277,13 @@ impl<'s> Surfaces<'s> {
         if taken.is_empty() {
             return Ok(Vec::new());
         }
-        let numbers: Vec<u32> = taken.iter().map(|&place| self.order[place]).collect();
-        let tinted = numbers.iter();
-        let tinted = tinted.map(|&number| self.surface.tinted_material(number as usize));
+        let Ordered { surface, order, .. } = *self.triangles;
+        let tinted = taken
+            .iter()
+            .map(|&place| surface.tinted_material(order[place] as usize));
         let tinted: Option<Vec<u32>> = tinted.collect();
-        let mesh = mesh_of(
-            &leaf_triangles(self.surface, &numbers, self.centre, None),
-            tinted,
-        );
+        let stored = self.triangles.stored(taken.iter().copied(), None);
+        let mesh = mesh_of(&stored, tinted);
         let how = Decimation {
             triangles: 0,
             error: Some(error),

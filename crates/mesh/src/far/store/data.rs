@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::far::record::{LISTS, LeafTriangle, Node, RECORD_BYTES};
+use crate::far::record::{LeafTriangle, Node, RECORD_BYTES};
 
 /// Triangles, and of an inner node voxels.
 #[derive(Debug)]
@@ -30,7 +30,7 @@ impl NodeData {
     }
 
     /// Records of the voxels by list.
-    pub fn lists(&self) -> [&[u8]; LISTS.len()] {
+    pub fn lists(&self) -> [&[u8]; RECORD_BYTES.len()] {
         let mut rest = &self.records[..];
         std::array::from_fn(|list| {
             let (mine, more) = rest.split_at(self.counts[list] as usize * RECORD_BYTES[list]);

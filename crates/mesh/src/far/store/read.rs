@@ -37,8 +37,9 @@ pub struct FarFile {
     texture_place: [u64; 2],
     textures: OnceLock<Vec<Arc<Texture>>>,
     nodes: Vec<Node>,
-    first_voxel: Vec<u32>,
-    first_triangle: Vec<u32>,
+    /// Voxels and triangles are numbered from node to node.
+    pub(in crate::far) first_voxel: Vec<u32>,
+    pub(in crate::far) first_triangle: Vec<u32>,
     data: Vec<Slot>,
     budget: Option<Budget>,
 }
@@ -155,15 +156,6 @@ impl FarFile {
         let (low, high) = self.bounds();
         let span = (low.to_array(), high.to_array());
         MeshBox::new(span, self.settings.bevels, self.settings.y_up)
-    }
-
-    /// Voxels are numbered from node to node, as triangles are.
-    pub(in crate::far) fn first_voxels(&self) -> &[u32] {
-        &self.first_voxel
-    }
-
-    pub(in crate::far) fn first_triangles(&self) -> &[u32] {
-        &self.first_triangle
     }
 
     pub fn voxels(&self) -> u32 {

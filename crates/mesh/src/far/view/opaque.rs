@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::cut::Chosen;
 use super::splat::Places;
 use super::{FarCounts, Opacity, Pixel, ViewOptions};
-use crate::far::record::{LISTS, LeafTriangle, OpacityKind, RECORD_BYTES, Voxel};
+use crate::far::record::{LeafTriangle, OPACITY_BYTES, RECORD_BYTES, Voxel};
 use crate::far::store::{FarFile, NodeData};
 use crate::geometry::point;
 use crate::raster::{self, NOTHING, Pattern, RasterCamera, RasterOptions, Samples};
@@ -65,13 +65,12 @@ impl<'f> Opaque<'f> {
 
     fn voxels(&self, number: usize) -> Result<u64, ViewError> {
         let places = Places::of(&self.file.nodes()[number], self.file.settings.centre);
-        let mut id = self.file.first_voxels()[number];
+        let mut id = self.file.first_voxel[number];
         let mut drawn = 0;
         let width = self.view.width as usize;
         let data = self.file.data(number)?;
         for (list, records) in data.lists().into_iter().enumerate() {
-            let is_opaque =
-                LISTS[list].1 == OpacityKind::Opaque || self.options.opacity == Opacity::None;
+            let is_opaque = OPACITY_BYTES[list] == 0 || self.options.opacity == Opacity::None;
             for record in records.chunks_exact(RECORD_BYTES[list]) {
                 let number = id;
                 id += 1;
@@ -144,8 +143,8 @@ impl<'f> Opaque<'f> {
             let word = word.load(Ordering::Relaxed);
             let node = match word as u32 {
                 _ if word == EMPTY => return NOTHING,
-                id if id < voxels => last_from(self.file.first_voxels(), id),
-                id => last_from(self.file.first_triangles(), id - voxels),
+                id if id < voxels => last_from(&self.file.first_voxel, id),
+                id => last_from(&self.file.first_triangle, id - voxels),
             };
             node as u32
         };
@@ -201,7 +200,7 @@ impl<'f> Opaque<'f> {
     }
 
     fn voxel_light(&self, id: u32, last: &mut Option<(usize, Arc<NodeData>)>) -> [f32; 3] {
-        let number = last_from(self.file.first_voxels(), id);
+        let number = last_from(&self.file.first_voxel, id);
         if last.as_ref().is_none_or(|(node, _)| *node != number) {
             // The node was drawn, so its data is sound.
             *last = self.file.data(number).ok().map(|data| (number, data));
@@ -209,7 +208,7 @@ impl<'f> Opaque<'f> {
         let Some((_, data)) = last else {
             return [0.0; 3];
         };
-        let mut rest = (id - self.file.first_voxels()[number]) as usize;
+        let mut rest = (id - self.file.first_voxel[number]) as usize;
         for (list, records) in data.lists().into_iter().enumerate() {
             let count = records.len() / RECORD_BYTES[list];
             if rest < count {
@@ -258,7 +257,7 @@ impl<'f> Surfaces<'f> {
             places: Vec::new(),
         };
         for &node in nodes {
-            let first = file.first_triangles()[node];
+            let first = file.first_triangle[node];
             let number = surface.data.len() as u32;
             let places = (0..file.nodes()[node].surface).map(|at| (number, at, first + at));
             surface.places.extend(places);

@@ -8,7 +8,7 @@ use super::cut::Chosen;
 use super::opaque::light_of;
 use super::splat::{PARTS, Places, Square};
 use super::{Pixel, ViewOptions};
-use crate::far::record::{LISTS, OpacityKind, RECORD_BYTES, Voxel};
+use crate::far::record::{OPACITY_BYTES, RECORD_BYTES, Voxel};
 use crate::far::store::FarFile;
 use crate::raster::RasterCamera;
 use crate::view_error::ViewError;
@@ -72,7 +72,7 @@ fn splats(
     let mut splats = Vec::new();
     let data = file.data(number)?;
     for (list, records) in data.lists().into_iter().enumerate() {
-        if LISTS[list].1 == OpacityKind::Opaque {
+        if OPACITY_BYTES[list] == 0 {
             continue;
         }
         for record in records.chunks_exact(RECORD_BYTES[list]) {
