@@ -79,10 +79,7 @@ pub fn count(
     let setup = &*in_words(setup, hardware.organisation);
     let mut frame = Frame::new(setup.width, setup.height, false);
     let light = lights(graph, setup, Shading::Lambert)?;
-    let view = GraphView {
-        light: &light,
-        ..graph.view()
-    };
+    let view = graph.lit(&light);
     let organisation = hardware.organisation;
     let records = RecordProbe::new(bits_by_kind(setup, graph.len(), organisation));
     let probes = ((Counter::new(), ShiftProbe::new()), records);
