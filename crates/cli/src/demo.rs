@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use hwmodel::cycles::Organisation;
 use serde_json::json;
 
 use super::args::{CameraArgs, PictureArgs, Size};
@@ -40,7 +41,7 @@ pub(super) fn run(console: &Console) -> Result<(), CliError> {
         .camera(&drawing.bounds(), scene.up, (SIDE, SIDE), 0.0);
     let (graph, setup) = (&scene.graph, drawing.setup(&camera)?);
     let overflow = draw_args.engine.rules.overflow();
-    let counter = frame::count_operations(&graph.view(), &setup, overflow)?.1;
+    let counter = frame::count(graph, &setup, Organisation::default(), overflow)?.counter;
     let shown = methods::frame(&mut drawing, &camera, 1)?;
     outputs::write(&shown, Path::new(PICTURE), &[], true)?;
     let hash = picture::hash_rows(&shown.buffers)?;

@@ -18,10 +18,10 @@ use hwmodel::cycles::Organisation;
 
 pub use folder::check_free;
 
+use super::frame::machine;
 use recorder::Recorder;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{GraphView, NodeLayout, PackedNormal};
-use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{EngineError, FrameSetup};
 use shiftvox::whole::{self, WholeError};
 
@@ -77,11 +77,7 @@ pub fn write(
             false => request.organisation.without_outlines(),
         };
         let layout = NodeLayout::new(graph, organisation.leaf_masks, organisation.bricks);
-        let mut machine = Machine::new(MachineOptions {
-            overflow: request.overflow,
-            organisation,
-            ..MachineOptions::default()
-        });
+        let mut machine = machine(request.overflow, organisation);
         let recorder = Recorder::new(folder, setup, request.records, organisation.stack)?;
         let (stats, mut recorder) = machine.render_probed(graph, setup, &mut frame, recorder)?;
         recorder.begin_directed();
