@@ -77,7 +77,8 @@ pub fn measure(
                         None => (EVERYTHING_ON, whole.about, whole.make),
                         Some(variant) => {
                             (variant.adjust)(&mut options);
-                            (variant.name, variant.about, variant.make)
+                            let make = variant.make.unwrap_or(whole.make);
+                            (variant.name, variant.about, make)
                         }
                     };
                     let setup = subject.setup(size, &options)?;
