@@ -60,8 +60,6 @@ pub enum VectorsError {
     Store(#[from] WholeError),
     #[error("a value at block {0} does not fit its wires: use wider words")]
     Misfit(&'static str),
-    #[error("{0}")]
-    Manifest(#[from] serde_json::Error),
 }
 
 pub fn write(
@@ -86,10 +84,7 @@ pub fn write(
         let found = (&recordings[..], turns.as_ref());
         let manifest = manifest::document(setup, request, graph.mask.len(), &stats, found);
         let mut files = vec![
-            (
-                folder::MANIFEST,
-                serde_json::to_string_pretty(&manifest)? + "\n",
-            ),
+            (folder::MANIFEST, format!("{manifest:#}\n")),
             (
                 frame_image::CONSTANTS,
                 frame_image::constants(setup, graph, &layout),
