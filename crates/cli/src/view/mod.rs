@@ -2,7 +2,6 @@
 
 mod drawer;
 mod flags;
-mod heat;
 mod overlay;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
