@@ -15,7 +15,6 @@ use super::area::DesignArea;
 use super::cost::{FrameCost, Prices};
 use shiftvox::split_mix::SplitMix;
 
-/// Number of draws.
 pub const DRAWS: usize = 4000;
 /// A normal variable lies within this many standard deviations of its mean in 90 % of all cases.
 const NINETY: f64 = 1.6449;
@@ -132,7 +131,6 @@ fn total(bill: &[&Breakdown]) -> f64 {
     bill.iter().map(|part| part.total).sum()
 }
 
-/// The quantity of a bill.
 #[derive(Debug, Clone, Copy)]
 enum Priced<'a> {
     Energy,
