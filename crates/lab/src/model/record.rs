@@ -49,18 +49,16 @@ fn cage_parts(setup: &FrameSetup) -> (u32, u32) {
 pub fn record_fields(
     setup: &FrameSetup,
     nodes: usize,
-    organisation: Organisation,
+    mut organisation: Organisation,
 ) -> Vec<RecordField> {
     use FieldPresence::{Always, AsFinestVoxel, InClipSpace, InScreenSpace};
     let word = setup.format.bits();
     let wide = setup.format.wide().bits();
     let (corners, edges) = cage_parts(setup);
     let exact = setup.options.coverage.draws_outlines();
-    let organisation = if exact {
-        organisation
-    } else {
-        organisation.without_outlines()
-    };
+    if !exact {
+        organisation = organisation.without_outlines();
+    }
     let proven = proven_widths(setup, nodes).filter(|_| organisation.packed);
     let bits_of = |number: RecordNumber, otherwise: u32| match &proven {
         Some(proven) => proven.numbers[&number].bits().min(otherwise),
