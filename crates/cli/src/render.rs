@@ -117,9 +117,8 @@ fn render_one(
         outputs::check_room(path, &args.flags.picture.aov, size, 1)?;
     }
     let opened = methods::open(name, &draw_args, console)?;
-    let mut drawable = opened
-        .drawable(&draw_args, &Stop::default())
-        .map_err(|e| e.at(name))?;
+    let drawable = opened.drawable(&draw_args, &Stop::default());
+    let mut drawable = drawable.map_err(|e| e.at(name))?;
     let up = args.flags.scene.up_or(drawable.up());
     let camera = args.flags.camera.camera(&drawable.bounds(), up, size, 0.0);
     if args.print_camera && !console.json {

@@ -55,9 +55,8 @@ pub(super) fn run(args: &TurntableArgs, console: &Console) -> Result<(), CliErro
     let draw_args = args.flags.draw_args(args.memory, is_hashed);
     let name = &args.scene_name;
     let opened = methods::open(name, &draw_args, console)?;
-    let mut drawable = opened
-        .drawable(&draw_args, &Stop::default())
-        .map_err(|e| e.at(name))?;
+    let drawable = opened.drawable(&draw_args, &Stop::default());
+    let mut drawable = drawable.map_err(|e| e.at(name))?;
     let up = args.flags.scene.up_or(drawable.up());
     // One distance for all frames, so that the object keeps its size.
     let bounds = drawable.bounds().revolved(up);

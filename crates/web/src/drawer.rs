@@ -118,13 +118,9 @@ impl Opened {
         let part = self.part(request)?;
         let graph = part.as_deref().unwrap_or(&self.scene).graph();
         let place = &graph.placement;
-        Ok(picked(
-            voxels[at],
-            graph.color_of(nodes[at] as u32),
-            graph.depth,
-            place.world_origin,
-            place.voxel_size,
-        ))
+        let color = graph.color_of(nodes[at] as u32);
+        let (origin, size) = (place.world_origin, place.voxel_size);
+        Ok(picked(voxels[at], color, graph.depth, origin, size))
     }
 
     /// As `view` places it. Drawing rejects cameras that see nothing.

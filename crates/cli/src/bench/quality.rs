@@ -126,10 +126,8 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
         let methods = made.methods(&choices)?;
         let mut cameras = vec![camera];
         if !args.heights.is_empty() {
-            let heights = args.heights.iter();
-            cameras = heights
-                .map(|&height| at_distance(&camera, height))
-                .collect();
+            let at = |&height: &u32| at_distance(&camera, height);
+            cameras = args.heights.iter().map(at).collect();
         }
         let graph = made.graphs.iter().flatten().next();
         let scene = Scene {
@@ -137,13 +135,8 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
             graph: graph.map(|(graph, _)| graph),
             mesh: made.mesh.as_ref().map(|mesh| mesh as &dyn Surface),
         };
-        rows.extend(measure(
-            scene,
-            &cameras,
-            &methods,
-            &plan,
-            console.progress(),
-        )?);
+        let measured = measure(scene, &cameras, &methods, &plan, console.progress());
+        rows.extend(measured?);
     }
     let fields = context.json(plan.schedule, &SetupOptions::default());
     let by_picture = |a: &Row, b: &Row| {

@@ -89,17 +89,10 @@ impl Listed {
     fn open(name: &str, args: &ViewArgs, console: &Console) -> Result<Self, CliError> {
         let draw_args = args.flags.draw_args(None, false);
         let opened = methods::open(name, &draw_args, console)?;
-        drop(
-            opened
-                .drawable(&draw_args, &Stop::default())
-                .map_err(|e| e.at(name))?,
-        );
-        let is_blended = args
-            .flags
-            .engine
-            .rules
-            .coverage
-            .is_some_and(Coverage::blends);
+        let drawable = opened.drawable(&draw_args, &Stop::default());
+        drawable.map(drop).map_err(|e| e.at(name))?;
+        let coverage = args.flags.engine.rules.coverage;
+        let is_blended = coverage.is_some_and(Coverage::blends);
         let reads_twice = !is_blended && !args.flags.scene.opacities && scenes::is_mesh(name)?;
         Ok(Self {
             name: name.to_owned(),
