@@ -207,10 +207,7 @@ impl Drop for Browser {
         }
         let _ = self.child.kill();
         let _ = self.child.wait();
-        let complaints = &self.complaints;
-        assert!(
-            std::thread::panicking() || complaints.is_empty(),
-            "{complaints:?}"
-        );
+        let is_fine = self.complaints.is_empty() || std::thread::panicking();
+        assert!(is_fine, "{:?}", self.complaints);
     }
 }
