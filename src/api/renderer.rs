@@ -400,10 +400,7 @@ impl Renderer {
         check_samples(&camera, options.aa_log2, FRAME_BYTES, 0, 0)?;
         let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)?;
         let light = lights(graph, &setup, self.shading).map_err(Error::Memory)?;
-        let view = GraphView {
-            light: &light,
-            ..graph.view()
-        };
+        let view = graph.lit(&light);
         let mut frame = Frame::nodes_only(0, 0);
         self.machine()
             .simulate(&view, &setup, &mut frame, hardware, &mut NoObserver)

@@ -9,7 +9,7 @@ use super::{
     milliseconds_since, now, timed,
 };
 use crate::frame::{Colors, Frame};
-use crate::graph::{Graph, GraphView};
+use crate::graph::Graph;
 use crate::picture::{Background, Buffer, Pixels, ResolveError, Resolver, Rows, Shading, lights};
 use crate::project::{
     Bounds, Camera, Contents, Engine, FrameSetup, SetupOptions, Stats, Up, Viewer,
@@ -280,10 +280,7 @@ impl Drawable for GraphDrawing<'_> {
         colors.fit(setup.width, setup.height)?;
         let light = lights(graph, &setup, Shading::Flat)?;
         Ok(Box::new(move || {
-            let view = GraphView {
-                light: &light,
-                ..graph.view()
-            };
+            let view = graph.lit(&light);
             engine.draw_colors(&view, &graph.color, &setup, &mut colors)?;
             std::hint::black_box(&colors);
             Ok(())

@@ -158,6 +158,13 @@ impl Graph {
             is_in_order: self.is_level_ordered() && self.links.is_empty(),
         }
     }
+
+    pub fn lit<'g>(&'g self, light: &'g [[u16; 3]]) -> GraphView<'g> {
+        GraphView {
+            light,
+            ..self.view()
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, Default)]

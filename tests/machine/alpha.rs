@@ -5,7 +5,7 @@ use crate::scenes::*;
 use glam::DVec3;
 use proptest::prelude::*;
 use shiftvox::frame::{Blend, Frame, NO_NODE};
-use shiftvox::graph::{Graph, GraphView};
+use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Coverage, Engine, SetupOptions};
 
@@ -86,7 +86,7 @@ proptest! {
         let light = lights(&graph);
         let options = SetupOptions { lod_px: 0.0, ..SetupOptions::of(Coverage::Alpha) };
         let setup = setup(&graph, &camera, &options);
-        let view = GraphView { light: &light, ..graph.view() };
+        let view = graph.lit(&light);
         let mut frame = Frame::new(setup.width, setup.height, false);
         let drawn = Machine::default().render(&view, &setup, &mut frame);
         prop_assert!(drawn.is_ok());

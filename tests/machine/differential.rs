@@ -170,10 +170,7 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
     let blended = (coverage.blends() && dice.below(4) > 0).then(|| airy(graph));
     let graph = blended.as_ref().unwrap_or(graph);
     let light = lights(graph);
-    let view = GraphView {
-        light: &light,
-        ..graph.view()
-    };
+    let view = graph.lit(&light);
     let setup = FrameSetup::new(camera, &graph.placement, graph.depth, options).ok()?;
     let machine = |machine: MachineOptions, setup: &FrameSetup, most: u64| {
         let mut frame = empty(setup);

@@ -6,7 +6,6 @@ use glam::DVec3;
 use proptest::prelude::*;
 use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::{Colors, Frame};
-use shiftvox::graph::GraphView;
 use shiftvox::machine::Machine;
 use shiftvox::project::viewer::FRAMES_UNCHANGED;
 use shiftvox::project::{Camera, Contents, Coverage, Engine, FrameSetup, SetupOptions, Viewer};
@@ -83,10 +82,7 @@ proptest! {
 fn used_engines_and_frames_of_other_sizes_draw_as_new_ones() {
     let graph = sierpinski(5);
     let light = lights(&graph);
-    let view = GraphView {
-        light: &light,
-        ..graph.view()
-    };
+    let view = graph.lit(&light);
     let fast = || {
         Box::new(Fast::new(
             FastOptions::default(),

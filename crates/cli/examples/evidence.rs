@@ -239,11 +239,8 @@ impl Tool {
 
 /// Cells that are not those of the page.
 fn differences(name: &str, table: &Table, rows: &[Row], block: &str) -> Vec<String> {
-    let heads: Row = table
-        .columns
-        .iter()
-        .map(|(head, ..)| head.clone())
-        .collect();
+    let heads = table.columns.iter();
+    let heads: Row = heads.map(|(head, ..)| head.clone()).collect();
     let cells = |line: &str| -> Row {
         let cells = line.trim_matches('|').split('|');
         cells.map(|cell| cell.trim().to_owned()).collect()

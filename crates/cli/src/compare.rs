@@ -146,9 +146,9 @@ fn buffers(a: &Array, b: &Array) -> Result<Comparison, CliError> {
     let entries: usize = a.shape.iter().skip(2).product();
     let entries = entries.max(1);
     let (differing, max_abs) = match (&a.values, &b.values) {
-        (Values::U8(a), Values::U8(b)) => spread(a, b, entries, |v| f64::from(*v)),
-        (Values::I32(a), Values::I32(b)) => spread(a, b, entries, |v| f64::from(*v)),
-        (Values::F32(a), Values::F32(b)) => spread(a, b, entries, |v| f64::from(*v)),
+        (Values::U8(a), Values::U8(b)) => spread(a, b, entries),
+        (Values::I32(a), Values::I32(b)) => spread(a, b, entries),
+        (Values::F32(a), Values::F32(b)) => spread(a, b, entries),
         _ => return Err(CliError::new(Kind::Failed, "the buffers differ in type")),
     };
     let mut numbers = vec![
@@ -175,19 +175,12 @@ fn buffers(a: &Array, b: &Array) -> Result<Comparison, CliError> {
     })
 }
 
-fn spread<T: PartialEq>(
-    a: &[T],
-    b: &[T],
-    entries: usize,
-    number: impl Fn(&T) -> f64,
-) -> (usize, f64) {
+fn spread<T: PartialEq + Copy + Into<f64>>(a: &[T], b: &[T], entries: usize) -> (usize, f64) {
     let pixels = a.chunks(entries).zip(b.chunks(entries));
     let apart = pixels.filter(|(p, q)| count_differing(p, q) > 0).count();
     let differing = a.iter().zip(b).filter(|(x, y)| x != y);
-    let max_abs = differing
-        .map(|(x, y)| (number(x) - number(y)).abs())
-        .fold(0.0, f64::max);
-    (apart, max_abs)
+    let distances = differing.map(|(&x, &y)| (x.into() - y.into()).abs());
+    (apart, distances.fold(0.0, f64::max))
 }
 
 fn print(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Result<(), CliError> {

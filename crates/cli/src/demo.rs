@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use hwmodel::cycles::Organisation;
 use serde_json::json;
 
-use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, Size};
+use super::args::{CameraArgs, PictureArgs, Size};
 use super::console::Console;
 use super::error::CliError;
-use super::methods::{self, DrawArgs};
+use super::methods::{self, DrawFlags};
 use super::report::{self, grouped};
 use super::{outputs, scenes};
 use shiftvox::drawing::Drawable;
@@ -21,27 +22,26 @@ const SIDE: u32 = 1024;
 
 pub(super) fn run(console: &Console) -> Result<(), CliError> {
     let scene = scenes::demo(console.progress())?;
-    let view = CameraArgs {
-        azimuth: Some(30.0),
-        elevation: Some(14.0),
-        ..CameraArgs::default()
+    let flags = DrawFlags {
+        camera: CameraArgs {
+            azimuth: Some(30.0),
+            elevation: Some(14.0),
+            ..CameraArgs::default()
+        },
+        picture: PictureArgs {
+            size: Some(Size::square(SIDE)),
+            ..PictureArgs::default()
+        },
+        ..DrawFlags::default()
     };
-    let picture_args = PictureArgs {
-        size: Some(Size::square(SIDE)),
-        ..PictureArgs::default()
-    };
-    let draw_args = DrawArgs {
-        engine: &EngineArgs::default(),
-        picture: &picture_args,
-        scene: &SceneArgs::default(),
-        memory: None,
-        is_hashed: true,
-    };
+    let draw_args = flags.draw_args(None, true);
     let mut drawing = methods::of_graph(&scene, &draw_args, &Stop::default())?;
-    let camera = view.camera(&drawing.bounds(), scene.up, (SIDE, SIDE), 0.0);
+    let camera = flags
+        .camera
+        .camera(&drawing.bounds(), scene.up, (SIDE, SIDE), 0.0);
     let (graph, setup) = (&scene.graph, drawing.setup(&camera)?);
     let overflow = draw_args.engine.rules.overflow();
-    let counter = frame::count_operations(&graph.view(), &setup, overflow)?.1;
+    let counter = frame::count(graph, &setup, Organisation::default(), overflow)?.counter;
     let shown = methods::frame(&mut drawing, &camera, 1)?;
     outputs::write(&shown, Path::new(PICTURE), &[], true)?;
     let hash = picture::hash_rows(&shown.buffers)?;

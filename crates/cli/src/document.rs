@@ -31,6 +31,25 @@ pub(super) fn failed(document: Option<Value>, error: &CliError) -> Value {
     document
 }
 
+/// The settings with a name: shipped ones, or a file relative to a folder. `noun` and `advice` are for messages.
+pub(super) fn named_settings(
+    name: &str,
+    shipped: &[(&str, &str)],
+    folder: &Path,
+    [noun, advice]: [&str; 2],
+) -> Result<String, CliError> {
+    if let Some((_, text)) = shipped.iter().find(|(of, _)| *of == name) {
+        return Ok((*text).to_owned());
+    }
+    let path = folder.join(name);
+    if path.exists() {
+        return read_settings(&path);
+    }
+    let names: Vec<&str> = shipped.iter().map(|(name, _)| *name).collect();
+    let error = CliError::input(format!("no {noun} and no file is called {name}"));
+    Err(error.advise(format!("take one of {}, or {advice}", names.join(", "))))
+}
+
 pub(super) fn read_settings(path: &Path) -> Result<String, CliError> {
     bounded::read_settings(path).map_err(|error| CliError::input(error).at(path.display()))
 }

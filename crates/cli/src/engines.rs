@@ -72,6 +72,12 @@ pub(super) const FAST: Candidate = Candidate {
     make: |threads| fast(threads, |_| {}),
 };
 
+fn machine(switch: fn(&mut MachineOptions)) -> Box<dyn Engine + Send> {
+    let mut options = MachineOptions::default();
+    switch(&mut options);
+    Box::new(Machine::new(options))
+}
+
 fn fast(threads: usize, switch: fn(&mut Switches)) -> Box<dyn Engine + Send> {
     let mut switches = Switches::default();
     switch(&mut switches);
@@ -153,65 +159,41 @@ pub(super) fn families(engines: &[String], variants: &[String]) -> Result<Vec<Fa
     Ok(families)
 }
 
-const WHOLE_FAST: Variant = Variant {
-    name: "",
-    about: "",
-    adjust: |_| {},
-    make: FAST.make,
-};
-const WHOLE_MACHINE: Variant = Variant {
-    make: MACHINE.make,
-    ..WHOLE_FAST
+const NO_LEVEL_OF_DETAIL: Variant = Variant {
+    name: "level of detail off",
+    about: "--lod 0: down to the leaves; the picture changes towards the exact one",
+    adjust: |options| options.lod_px = 0.0,
+    make: None,
 };
 
 const FAST_VARIANTS: &[Variant] = &[
     Variant {
         name: "hidden windows looked into",
         about: "occluded nodes are descended; the picture must be the same",
-        make: |threads| fast(threads, |on| on.hidden = false),
-        ..WHOLE_FAST
+        make: Some(|threads| fast(threads, |on| on.hidden = false)),
+        adjust: |_| {},
     },
     Variant {
         name: "bricks off",
         about: "voxel by voxel in the last levels; the picture must be the same",
-        make: |threads| fast(threads, |on| on.bricks = false),
-        ..WHOLE_FAST
+        make: Some(|threads| fast(threads, |on| on.bricks = false)),
+        adjust: |_| {},
     },
-    Variant {
-        name: "level of detail off",
-        about: "--lod 0: down to the leaves; the picture changes towards the exact one",
-        adjust: |options| options.lod_px = 0.0,
-        ..WHOLE_FAST
-    },
+    NO_LEVEL_OF_DETAIL,
 ];
 
 const MACHINE_VARIANTS: &[Variant] = &[
     Variant {
         name: "occlusion order off",
         about: "children in the order 0 to 7 for every eye: the picture is WRONG",
-        make: |_| {
-            Box::new(Machine::new(MachineOptions {
-                order: [0, 1, 2, 3, 4, 5, 6, 7],
-                ..MachineOptions::default()
-            }))
-        },
-        ..WHOLE_MACHINE
+        make: Some(|_| machine(|options| options.order = [0, 1, 2, 3, 4, 5, 6, 7])),
+        adjust: |_| {},
     },
     Variant {
         name: "fill-vector rejection off",
         about: "occluded records are descended; the picture must be the same",
-        make: |_| {
-            Box::new(Machine::new(MachineOptions {
-                reject_filled: false,
-                ..MachineOptions::default()
-            }))
-        },
-        ..WHOLE_MACHINE
+        make: Some(|_| machine(|options| options.reject_filled = false)),
+        adjust: |_| {},
     },
-    Variant {
-        name: "level of detail off",
-        about: "--lod 0: down to the leaves; the picture changes towards the exact one",
-        adjust: |options| options.lod_px = 0.0,
-        ..WHOLE_MACHINE
-    },
+    NO_LEVEL_OF_DETAIL,
 ];

@@ -138,8 +138,7 @@ macro_rules! exit_codes {
 exit_codes! {
     message:
     SetupError {
-        SetupError::Camera(_) | SetupError::Format(_) | SetupError::Tolerance(_) => Kind::Usage,
-        SetupError::Setting { .. } => Kind::Usage,
+        SetupError::Camera(_) | SetupError::Format(_) | SetupError::Tolerance(_) | SetupError::Setting { .. } => Kind::Usage,
         SetupError::Depth(_) | SetupError::OutOfRange | SetupError::Collapsed { .. } => Kind::Limit,
     }
     EngineError {
@@ -158,10 +157,8 @@ exit_codes! {
         ResolveError::Memory(short) => return short.into(),
     }
     far::BuildError {
-        far::BuildError::Empty | far::BuildError::Range => Kind::Input,
-        far::BuildError::FarAway { .. } => Kind::Input,
-        far::BuildError::TooMany(_) | far::BuildError::Surface(_) => Kind::Limit,
-        far::BuildError::Memory { .. } => Kind::Limit,
+        far::BuildError::Empty | far::BuildError::Range | far::BuildError::FarAway { .. } => Kind::Input,
+        far::BuildError::TooMany(_) | far::BuildError::Surface(_) | far::BuildError::Memory { .. } => Kind::Limit,
         far::BuildError::Option(_) => Kind::Usage,
         far::BuildError::File { .. } => Kind::Run,
     }
@@ -195,7 +192,6 @@ exit_codes! {
         VectorsError::Engine(error) => return error.into(),
         VectorsError::Store(error) => return error.into(),
         VectorsError::Misfit(_) => Kind::Limit,
-        VectorsError::Manifest(_) => Kind::Run,
     }
     WholeError {
         WholeError::Exists(_) => {

@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::args::{EngineArgs, EngineName, PictureArgs, SceneArgs};
+use clap::Args;
+
+use super::args::{CameraArgs, EngineArgs, EngineName, PictureArgs, SceneArgs};
 use super::console::Console;
 use super::engines;
 use super::error::{CliError, Kind};
@@ -11,13 +13,38 @@ use super::fatal_signals;
 use super::scenes::{self, Scene};
 use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, Shown, milliseconds_since};
 use shiftvox::graph::Crop;
-use shiftvox::picture::Buffer;
+use shiftvox::picture::{self, Buffer};
 use shiftvox::project::{Camera, Stop};
 use shiftvox::scene::{FileKind, OpenOptions, Source};
 use shiftvox_mesh::drawing::{FarStyle, TexturedStyle, of_far, of_textured};
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::textured::TexturedFile;
 use shiftvox_mesh::textured::view::Erosion;
+
+/// The flags of all commands that draw.
+#[derive(Debug, Default, Args)]
+pub(super) struct DrawFlags {
+    #[command(flatten)]
+    pub(super) camera: CameraArgs,
+    #[command(flatten)]
+    pub(super) picture: PictureArgs,
+    #[command(flatten)]
+    pub(super) engine: EngineArgs,
+    #[command(flatten)]
+    pub(super) scene: SceneArgs,
+}
+
+impl DrawFlags {
+    pub(super) fn draw_args(&self, memory: Option<u64>, is_hashed: bool) -> DrawArgs<'_> {
+        DrawArgs {
+            engine: &self.engine,
+            picture: &self.picture,
+            scene: &self.scene,
+            memory,
+            is_hashed,
+        }
+    }
+}
 
 #[derive(Clone, Copy)]
 pub(super) struct DrawArgs<'a> {
@@ -264,6 +291,12 @@ pub(super) fn frame<'d>(
     drawable.draw(camera, repeat)?;
     let shown = drawable.shown()?;
     shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))
+}
+
+/// The picture's hash, if it is asked for.
+pub(super) fn hash(shown: &Shown<'_>, is_hashed: bool) -> Result<Option<String>, CliError> {
+    let hash = is_hashed.then(|| picture::hash_rows(&shown.buffers));
+    Ok(hash.transpose()?)
 }
 
 pub(super) fn of_graph<'s>(

@@ -5,15 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, bytes};
+use super::args::bytes;
 use super::batch::{self, Job, Part};
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::methods::{self, DrawArgs};
+use super::methods::{self, DrawFlags};
 use super::{outputs, report};
 use shiftvox::drawing::{DrawError, Shown};
 use shiftvox::frame::count_samples;
-use shiftvox::picture;
 use shiftvox::project::Stop;
 use shiftvox::whole;
 use shiftvox_lab::bench::Summary;
@@ -54,13 +53,7 @@ pub(super) struct RenderArgs {
     #[arg(long)]
     force: bool,
     #[command(flatten)]
-    camera: CameraArgs,
-    #[command(flatten)]
-    picture: PictureArgs,
-    #[command(flatten)]
-    engine: EngineArgs,
-    #[command(flatten)]
-    scene: SceneArgs,
+    flags: DrawFlags,
 }
 
 /// Samples of a picture that is drawn before a second thread has started.
@@ -69,8 +62,8 @@ const FEW_SAMPLES: u64 = 1 << 14;
 impl RenderArgs {
     /// Whether more threads would cost time: a small picture of a file that is not read whole.
     pub(super) fn is_small(&self) -> bool {
-        let (width, height) = self.picture.size();
-        let samples = (u64::from(width) * u64::from(height)) << (2 * self.picture.aa_log2());
+        let (width, height) = self.flags.picture.size();
+        let samples = (u64::from(width) * u64::from(height)) << (2 * self.flags.picture.aa_log2());
         let is_mapped = matches!(&self.scenes[..], [scene] if scene.ends_with(".vxg"));
         is_mapped && samples <= FEW_SAMPLES
     }
@@ -79,7 +72,7 @@ impl RenderArgs {
 pub(super) fn run(args: &RenderArgs, console: &Console) -> Result<(), CliError> {
     check(args)?;
     let answers = args.hash || args.expect_hash.is_some() || args.print_camera || args.repeat > 1;
-    let is_needed = !answers || !args.picture.aov.is_empty() || args.resume;
+    let is_needed = !answers || !args.flags.picture.aov.is_empty() || args.resume;
     let jobs = batch::jobs(&args.scenes, args.output.as_deref(), is_needed, args.part)?;
     let is_batch = jobs.len() > 1 || args.part.is_some();
     let draw = |job: &Job| render_one(args, job, is_batch, console);
@@ -87,14 +80,14 @@ pub(super) fn run(args: &RenderArgs, console: &Console) -> Result<(), CliError> 
 }
 
 fn check(args: &RenderArgs) -> Result<(), CliError> {
-    args.camera.check().map_err(CliError::usage)?;
+    args.flags.camera.check().map_err(CliError::usage)?;
     if let Some(expected) = &args.expect_hash
         && !(expected.len() == 32 && expected.bytes().all(|b| b.is_ascii_hexdigit()))
     {
         return Err(CliError::usage("--expect-hash takes 32 hexadecimal digits"));
     }
-    let (width, height) = args.picture.size();
-    count_samples(width, height, args.picture.aa_log2()).map_err(DrawError::from)?;
+    let (width, height) = args.flags.picture.size();
+    count_samples(width, height, args.flags.picture.aa_log2()).map_err(DrawError::from)?;
     Ok(())
 }
 
@@ -106,7 +99,9 @@ fn render_one(
 ) -> Result<Value, CliError> {
     let name = &job.scene;
     let files = job.picture.as_deref();
-    let files = files.map_or_else(Vec::new, |path| outputs::paths(path, &args.picture.aov));
+    let files = files.map_or_else(Vec::new, |path| {
+        outputs::paths(path, &args.flags.picture.aov)
+    });
     let mut missing = files.clone();
     missing.retain(|path| !(args.resume && path.is_file()));
     if args.resume && missing.is_empty() {
@@ -114,31 +109,23 @@ fn render_one(
         return Ok(json!({ "scene": name, "output": job.picture, "is_left_out": true }));
     }
     let is_hashed = args.hash || args.expect_hash.is_some() || console.json;
-    let draw_args = DrawArgs {
-        engine: &args.engine,
-        picture: &args.picture,
-        scene: &args.scene,
-        memory: args.memory,
-        is_hashed,
-    };
-    let size = args.picture.size();
+    let draw_args = args.flags.draw_args(args.memory, is_hashed);
+    let size = args.flags.picture.size();
     let output = &job.picture;
     if let Some(path) = output {
         outputs::check_free(&missing, args.force)?;
-        outputs::check_room(path, &args.picture.aov, size, 1)?;
+        outputs::check_room(path, &args.flags.picture.aov, size, 1)?;
     }
     let opened = methods::open(name, &draw_args, console)?;
-    let mut drawable = opened
-        .drawable(&draw_args, &Stop::default())
-        .map_err(|e| e.at(name))?;
-    let up = args.scene.up_or(drawable.up());
-    let camera = args.camera.camera(&drawable.bounds(), up, size, 0.0);
+    let drawable = opened.drawable(&draw_args, &Stop::default());
+    let mut drawable = drawable.map_err(|e| e.at(name))?;
+    let up = args.flags.scene.up_or(drawable.up());
+    let camera = args.flags.camera.camera(&drawable.bounds(), up, size, 0.0);
     if args.print_camera && !console.json {
         console.data(camera.flags())?;
     }
     let shown = methods::frame(&mut *drawable, &camera, args.repeat).map_err(|e| e.at(name))?;
-    let hash = is_hashed.then(|| picture::hash_rows(&shown.buffers));
-    let hash = hash.transpose().map_err(|e| CliError::from(e).at(name))?;
+    let hash = methods::hash(&shown, is_hashed).map_err(|e| e.at(name))?;
     if let Some(hash) = hash.as_deref().filter(|_| args.hash && !console.json) {
         console.data(match is_one_of_many {
             false => hash.to_owned(),
@@ -147,7 +134,7 @@ fn render_one(
     }
     if let Some(path) = output {
         let replace = args.force || args.resume;
-        let mut made = outputs::prepare(&shown, path, &args.picture.aov, replace)?;
+        let mut made = outputs::prepare(&shown, path, &args.flags.picture.aov, replace)?;
         made.retain(|file| !(args.resume && file.path().is_file()));
         whole::keep(made)?;
     }

@@ -5,12 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, bytes};
+use super::args::bytes;
 use super::console::Console;
 use super::error::CliError;
-use super::methods::{self, DrawArgs};
+use super::methods::{self, DrawFlags};
 use super::{outputs, report};
-use shiftvox::picture;
 use shiftvox::project::{Camera, Stop};
 use shiftvox_lab::bench::Summary;
 
@@ -36,51 +35,36 @@ pub(super) struct TurntableArgs {
     #[arg(long)]
     force: bool,
     #[command(flatten)]
-    camera: CameraArgs,
-    #[command(flatten)]
-    picture: PictureArgs,
-    #[command(flatten)]
-    engine: EngineArgs,
-    #[command(flatten)]
-    scene: SceneArgs,
+    flags: DrawFlags,
 }
 
 pub(super) fn run(args: &TurntableArgs, console: &Console) -> Result<(), CliError> {
-    args.camera.check().map_err(CliError::usage)?;
-    if args.camera.eye.is_some() {
+    args.flags.camera.check().map_err(CliError::usage)?;
+    if args.flags.camera.eye.is_some() {
         let advice = "use --view, --azimuth, --elevation and --zoom instead of --eye and --target";
         return Err(CliError::usage("a turntable places its own cameras").advise(advice));
     }
     outputs::check_picture_name(&args.output)?;
     let paths = frame_paths(&args.output, args.frames)?;
-    let (buffers, size) = (&args.picture.aov, args.picture.size());
+    let (buffers, size) = (&args.flags.picture.aov, args.flags.picture.size());
     for path in &paths {
         outputs::check_free(&outputs::paths(path, buffers), args.force)?;
     }
     outputs::check_room(&args.output, buffers, size, paths.len())?;
-    let draw_args = DrawArgs {
-        engine: &args.engine,
-        picture: &args.picture,
-        scene: &args.scene,
-        memory: args.memory,
-        is_hashed: args.hash || console.json,
-    };
+    let is_hashed = args.hash || console.json;
+    let draw_args = args.flags.draw_args(args.memory, is_hashed);
     let name = &args.scene_name;
     let opened = methods::open(name, &draw_args, console)?;
-    let mut drawable = opened
-        .drawable(&draw_args, &Stop::default())
-        .map_err(|e| e.at(name))?;
-    let up = args.scene.up_or(drawable.up());
+    let drawable = opened.drawable(&draw_args, &Stop::default());
+    let mut drawable = drawable.map_err(|e| e.at(name))?;
+    let up = args.flags.scene.up_or(drawable.up());
     // One distance for all frames, so that the object keeps its size.
     let bounds = drawable.bounds().revolved(up);
     let mut times_ms = Vec::new();
     let mut draw = |camera: &Camera, path: &Path| -> Result<Value, CliError> {
         let shown = methods::frame(&mut *drawable, camera, 1)?;
         outputs::write(&shown, path, buffers, args.force)?;
-        let hash = draw_args
-            .is_hashed
-            .then(|| picture::hash_rows(&shown.buffers));
-        let hash = hash.transpose()?;
+        let hash = methods::hash(&shown, is_hashed)?;
         if let Some(hash) = hash.as_deref().filter(|_| !console.json) {
             console.data(format!("{hash}  {}", path.display()))?;
         }
@@ -93,7 +77,7 @@ pub(super) fn run(args: &TurntableArgs, console: &Console) -> Result<(), CliErro
     console.progress().begin("drawing", u64::from(args.frames));
     for (frame, path) in paths.iter().enumerate() {
         let degrees = 360.0 * frame as f64 / f64::from(args.frames);
-        let result = draw(&args.camera.camera(&bounds, up, size, degrees), path);
+        let result = draw(&args.flags.camera.camera(&bounds, up, size, degrees), path);
         results.push(result.map_err(|e| e.at(format!("{name}, frame {frame}")))?);
         console.progress().advance(1);
     }

@@ -2,12 +2,13 @@
 //! a list of measurements in TOML (`reproduce.toml`).
 
 use hwmodel::Overflow;
+use hwmodel::cycles::Organisation;
 use serde::Deserialize;
 
 use crate::bench::{
     BenchError, EVERYTHING_ON, Family, Harness, PowerLaw, Subject, TimePlan, measure,
 };
-use crate::model::frame::count_operations;
+use crate::model::frame::{self, Counted};
 use crate::report::plot::{Chart, RowPlot, Series};
 use crate::report::{Cell, Row, Table};
 use shiftvox::picture::{self, Background, Shading, resolve};
@@ -126,8 +127,8 @@ fn count(row: &mut Row, subject: &Subject, options: SetupOptions) -> Result<(), 
     let side = row.number("width") as u32;
     let setup = subject.setup((side, side), &options)?;
     let graph = &subject.graph;
-    let counted = count_operations(&graph.view(), &setup, Overflow::Trap);
-    let (frame, counter, _) = counted.map_err(|source| BenchError::Engine {
+    let counted = frame::count(graph, &setup, Organisation::default(), Overflow::Trap);
+    let Counted { frame, counter, .. } = counted.map_err(|source| BenchError::Engine {
         who: subject.name.clone(),
         source,
     })?;

@@ -6,6 +6,7 @@ use glam::DVec3;
 use serde_json::{Value, json};
 use shiftvox::graph::Crop;
 use shiftvox::project::{Bounds, Camera as Placed};
+use shiftvox::scene::BUNDLED_TREE;
 use shiftvox::{
     Buffer, CageKind, Camera, Coverage, EngineKind, Picture, Renderer, Scene, Shading, View,
 };
@@ -22,20 +23,15 @@ pub(super) struct Opened {
 
 impl Opened {
     pub(super) fn of(name: &str, bytes: &[u8]) -> Result<Self, String> {
-        let scene = match name {
-            "" => Scene::from_bytes(shiftvox::scene::BUNDLED_TREE, "tree.vox"),
-            name => Scene::from_bytes(bytes, name),
+        let (name, file, bytes) = match name {
+            "" => ("assets/tree.vox", "tree.vox", BUNDLED_TREE),
+            name => (name, name, bytes),
         };
-        let scene = scene.map_err(|error| error.to_string())?;
+        let scene = Scene::from_bytes(bytes, file).map_err(|error| error.to_string())?;
         Ok(Self {
             extent: Bounds::in_file(scene.graph()),
             part: Mutex::default(),
-            name: if name.is_empty() {
-                "assets/tree.vox"
-            } else {
-                name
-            }
-            .to_owned(),
+            name: name.to_owned(),
             scene,
         })
     }
@@ -122,13 +118,9 @@ impl Opened {
         let part = self.part(request)?;
         let graph = part.as_deref().unwrap_or(&self.scene).graph();
         let place = &graph.placement;
-        Ok(picked(
-            voxels[at],
-            graph.color_of(nodes[at] as u32),
-            graph.depth,
-            place.world_origin,
-            place.voxel_size,
-        ))
+        let color = graph.color_of(nodes[at] as u32);
+        let (origin, size) = (place.world_origin, place.voxel_size);
+        Ok(picked(voxels[at], color, graph.depth, origin, size))
     }
 
     /// As `view` places it. Drawing rejects cameras that see nothing.

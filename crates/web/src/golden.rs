@@ -12,7 +12,7 @@ use hwmodel::count::Counter;
 use shiftvox::Coverage;
 use shiftvox::fast::{Fast, FastOptions, Instructions};
 use shiftvox::frame::Frame;
-use shiftvox::graph::{BuildOptions, Builder, Graph, GraphView, Normals, Opacity, Silent};
+use shiftvox::graph::{BuildOptions, Builder, Graph, Normals, Opacity, Silent};
 use shiftvox::machine::{Machine, RecordStage};
 use shiftvox::project::{CageKind, Camera, Engine, FrameSetup, SetupOptions as Options};
 use shiftvox::rays::Rays;
@@ -154,10 +154,7 @@ fn draw(row: &str, used: &mut Machine) -> (Frame, Option<Counter>) {
     let light: Vec<_> = (0..graph.len() as u16)
         .map(|i| [0, 1, 2].map(|c| i.wrapping_mul(40_503).rotate_left(5 * c)))
         .collect();
-    let view = GraphView {
-        light: &light,
-        ..graph.view()
-    };
+    let view = graph.lit(&light);
     let side = (1u64 << graph.depth) as f64;
     let low = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
     let [eye, target] = [2, 3].map(|cell| low + DVec3::from_slice(&numbers(cell)) * side);

@@ -1,6 +1,6 @@
 //! `bench quality`: what pictures cost and how far they are from the truth.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::check_sizes;
 use super::made::Made;
@@ -29,16 +29,6 @@ const DEFAULT_SIDE: u32 = 256;
 /// Most pixels a side: references take 512 times the work of a picture.
 const MOST_SIDE: u32 = 4096;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MotionName {
-    /// Half a degree around the target per frame.
-    Turntable,
-    /// A hundredth of the way towards the target per frame.
-    Dolly,
-    /// An eighth of a pixel to the right per frame.
-    Pan,
-}
-
 #[derive(Debug, Args)]
 pub(super) struct QualityArgs {
     /// Scenes, as files, generators or `bundled` [default: bundled gen:terrain,depth=9
@@ -63,7 +53,7 @@ pub(super) struct QualityArgs {
     heights: Vec<u32>,
     /// Camera motions to film, for flicker [default: none]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    motions: Vec<MotionName>,
+    motions: Vec<Motion>,
     /// Frames of a film
     #[arg(long, value_name = "N", default_value_t = 5,
           value_parser = clap::value_parser!(u32).range(2..=1000))]
@@ -86,11 +76,6 @@ pub(super) struct QualityArgs {
 }
 
 impl QualityArgs {
-    fn motions(&self) -> Vec<Motion> {
-        let motion = |name: &MotionName| Motion::ALL[*name as usize];
-        self.motions.iter().map(motion).collect()
-    }
-
     fn open(
         &self,
         name: &str,
@@ -131,7 +116,7 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
     let samples: u32 = args.reference_samples.parse().unwrap_or(16);
     let plan = QualityPlan {
         schedule: args.schedule,
-        motions: args.motions(),
+        motions: args.motions.clone(),
         frames: args.frames,
         strata_log2: samples.ilog2(),
     };
@@ -141,10 +126,8 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
         let methods = made.methods(&choices);
         let mut cameras = vec![camera];
         if !args.heights.is_empty() {
-            let heights = args.heights.iter();
-            cameras = heights
-                .map(|&height| at_distance(&camera, height))
-                .collect();
+            let at = |&height: &u32| at_distance(&camera, height);
+            cameras = args.heights.iter().map(at).collect();
         }
         let graph = made.graphs.iter().flatten().next();
         let scene = Scene {
@@ -152,13 +135,8 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
             graph: graph.map(|(graph, _)| graph),
             mesh: made.mesh.as_ref().map(|mesh| mesh as &dyn Surface),
         };
-        rows.extend(measure(
-            scene,
-            &cameras,
-            &methods,
-            &plan,
-            console.progress(),
-        )?);
+        let measured = measure(scene, &cameras, &methods, &plan, console.progress());
+        rows.extend(measured?);
     }
     let fields = context.json(plan.schedule, &SetupOptions::default());
     let by_picture = |a: &Row, b: &Row| {

@@ -61,16 +61,10 @@ pub(crate) fn check<'p>(
     args: &'p ExportArgs,
     others: impl IntoIterator<Item = &'p PathBuf>,
 ) -> Result<(), CliError> {
-    let ExportArgs {
-        export_json,
-        export_csv,
-        export_svg,
-        force,
-    } = args;
-    let own = [export_json, export_csv, export_svg];
+    let own = [&args.export_json, &args.export_csv, &args.export_svg];
     let paths: Vec<&PathBuf> = own.into_iter().flatten().chain(others).collect();
     for (place, path) in paths.iter().enumerate() {
-        whole::check_free(path, *force)?;
+        whole::check_free(path, args.force)?;
         if paths[..place].contains(path) {
             let message = format!("{}: two outputs to one file", path.display());
             return Err(CliError::usage(message));

@@ -9,7 +9,7 @@ use hwmodel::cycles::{Hardware, PRESETS};
 
 use super::explore::args::ExploreArgs;
 use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size};
-use crate::document::read_settings;
+use crate::document::{named_settings, read_settings};
 use crate::error::CliError;
 use crate::experiment::export::ExportArgs;
 use shiftvox::machine::check_hardware;
@@ -90,20 +90,9 @@ pub(super) struct FileArgs {
     pub(super) vector_records: u64,
 }
 
-/// The description with a name: a shipped one, or a file relative to a folder.
 fn text_named(name: &str, folder: &Path) -> Result<String, CliError> {
-    if let Some((_, text)) = PRESETS.iter().find(|(of, _)| *of == name) {
-        return Ok((*text).to_owned());
-    }
-    let path = folder.join(name);
-    if !path.exists() {
-        let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
-        let names = names.join(", ");
-        let advice = format!("take one of {names}, or print one with --print-hw and change it");
-        let message = format!("no hardware and no file is called {name}");
-        return Err(CliError::input(message).advise(advice));
-    }
-    read_settings(&path)
+    let told = ["hardware", "print one with --print-hw and change it"];
+    named_settings(name, &PRESETS, folder, told)
 }
 
 pub(super) fn hardware_named(name: &str, folder: &Path) -> Result<Hardware, CliError> {

@@ -30,7 +30,7 @@ pub(crate) fn brief(
     let (hardware, prices) = (args.hardware()?, args.hardware.prices()?);
     let (options, overflow) = (args.setup_options(), args.rules.overflow());
     let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
-    let counted = frame::count(graph, &setup, &hardware, overflow)?;
+    let counted = frame::count(graph, &setup, hardware.organisation, overflow)?;
     let (view, observer) = (graph.view(), &mut NoObserver);
     let (_, simulated) = frame::simulate(&view, &setup, &hardware, overflow, observer)?;
     let cycles = &simulated.cycles;

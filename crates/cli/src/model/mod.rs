@@ -80,7 +80,7 @@ fn find(
     let progress = console.progress();
 
     progress.begin("counting", 0);
-    let counted = frame::count(graph, &setup, &hardware, args.rules.overflow())?;
+    let counted = frame::count(graph, &setup, hardware.organisation, args.rules.overflow())?;
     progress.end();
     vectors::write(args, name, graph, &setup, &hardware, console)?;
     progress.begin("cycles", counted.counter.records());

@@ -5,7 +5,7 @@ use hwmodel::cycles::{Hardware, Organisation};
 use super::args::ModelArgs;
 use crate::console::Console;
 use crate::error::CliError;
-use shiftvox::graph::{Graph, GraphView};
+use shiftvox::graph::Graph;
 use shiftvox::picture::{Shading, lights};
 use shiftvox::project::FrameSetup;
 use shiftvox_lab::model::vectors::{self, Request};
@@ -54,10 +54,7 @@ pub(super) fn write(
         overwrite: args.export.force,
     };
     let light = lights(graph, setup, Shading::Lambert)?;
-    let lit = GraphView {
-        light: &light,
-        ..graph.view()
-    };
+    let lit = graph.lit(&light);
     let recorded = vectors::write(&lit, setup, &request)?;
     let (rows, blocks) = (recorded.rows, recorded.blocks);
     console.note(format!(

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use shiftvox::drawing::{Drawable, Shown};
 use shiftvox::graph::{Graph, Placement};
 use shiftvox::picture::npy::Values;
-use shiftvox::picture::{self, Buffer, Pixels, Rows};
+use shiftvox::picture::{Buffer, Pixels, Rows};
 use shiftvox::project::{Camera, Stop};
 use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request, command, picked};
 
@@ -37,7 +37,7 @@ type Kept<'s> = Vec<(Key, Box<dyn Drawable + 's>)>;
 impl Program for Shared {
     fn hello(&self) -> Value {
         let names: Vec<&str> = self.scenes().iter().map(|s| s.name.as_str()).collect();
-        let picture = &self.args.picture;
+        let picture = &self.args.flags.picture;
         json!({
             "scenes": names,
             "flags": self.first,
@@ -95,8 +95,9 @@ impl Shared {
         // All buffers are kept for the hash, and one of them has the picked voxel.
         let is_hashed = request.hash || request.ask == Ask::Pick;
         let args = DrawArgs {
-            is_hashed,
-            ..self.args.draw_args(&settings.engine, &settings.picture)
+            engine: &settings.engine,
+            picture: &settings.picture,
+            ..self.args.flags.draw_args(None, is_hashed)
         };
         let show = settings.picture.aov.first().copied();
         let key = Key {
@@ -128,10 +129,10 @@ impl Shared {
                 &mut *kept[0].1
             }
         };
-        let up = self.args.scene.up_or(drawable.up());
+        let up = self.args.flags.scene.up_or(drawable.up());
         let (width, height) = settings.picture.size();
         let camera = flags::camera(request).unwrap_or_else(|| {
-            let args = &self.args.camera;
+            let args = &self.args.flags.camera;
             args.camera(&drawable.bounds(), up, (width, height), 0.0)
         });
         let shown = methods::frame(drawable, &camera, 1)?;
@@ -141,8 +142,7 @@ impl Shared {
                 .ok_or_else(|| CliError::usage("this scene has no voxels that can be picked"))?;
             return pick(&shown, graph, request.at);
         }
-        let hash = request.hash.then(|| picture::hash_rows(&shown.buffers));
-        let hash = hash.transpose()?;
+        let hash = methods::hash(&shown, request.hash)?;
         let overlay = show.map(|buffer| overlay::colors(&shown.buffers, buffer));
         let overlay = overlay.transpose()?;
         let (colors, legend) = overlay.unzip();
@@ -180,7 +180,11 @@ impl Shared {
     fn figures(&self, request: &Request) -> Result<Answer, CliError> {
         let settings = flags::settings(request)?;
         let listed = self.scene(request.scene)?;
-        let args = self.args.draw_args(&settings.engine, &settings.picture);
+        let args = DrawArgs {
+            engine: &settings.engine,
+            picture: &settings.picture,
+            ..self.args.flags.draw_args(None, false)
+        };
         let opened = listed.chosen(&args, settings.crop.as_ref())?;
         let graph = opened.graph().ok_or_else(|| {
             CliError::usage("the hardware model is of voxels, and this scene has none")

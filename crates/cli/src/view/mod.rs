@@ -2,7 +2,6 @@
 
 mod drawer;
 mod flags;
-mod heat;
 mod overlay;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -18,10 +17,9 @@ use shiftvox::graph::Crop;
 use shiftvox::project::{Bounds, Coverage, Stop};
 use shiftvox_view::{Flags, Server};
 
-use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs};
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::methods::{self, DrawArgs, Opened};
+use super::methods::{self, DrawArgs, DrawFlags, Opened};
 use super::{document, scenes};
 
 #[derive(Debug, Args)]
@@ -44,13 +42,7 @@ pub(super) struct ViewArgs {
     #[arg(long)]
     open: bool,
     #[command(flatten)]
-    camera: CameraArgs,
-    #[command(flatten)]
-    picture: PictureArgs,
-    #[command(flatten)]
-    engine: EngineArgs,
-    #[command(flatten)]
-    scene: SceneArgs,
+    flags: DrawFlags,
 }
 
 struct Shared {
@@ -95,15 +87,13 @@ impl Deref for Chosen {
 
 impl Listed {
     fn open(name: &str, args: &ViewArgs, console: &Console) -> Result<Self, CliError> {
-        let draw_args = args.draw_args(&args.engine, &args.picture);
+        let draw_args = args.flags.draw_args(None, false);
         let opened = methods::open(name, &draw_args, console)?;
-        drop(
-            opened
-                .drawable(&draw_args, &Stop::default())
-                .map_err(|e| e.at(name))?,
-        );
-        let is_blended = args.engine.rules.coverage.is_some_and(Coverage::blends);
-        let reads_twice = !is_blended && !args.scene.opacities && scenes::is_mesh(name)?;
+        let drawable = opened.drawable(&draw_args, &Stop::default());
+        drawable.map(drop).map_err(|e| e.at(name))?;
+        let coverage = args.flags.engine.rules.coverage;
+        let is_blended = coverage.is_some_and(Coverage::blends);
+        let reads_twice = !is_blended && !args.flags.scene.opacities && scenes::is_mesh(name)?;
         Ok(Self {
             name: name.to_owned(),
             opened,
@@ -114,7 +104,7 @@ impl Listed {
     }
 
     fn dropped(name: &str, bytes: &[u8], args: &ViewArgs) -> Result<Self, CliError> {
-        let draw_args = args.draw_args(&args.engine, &args.picture);
+        let draw_args = args.flags.draw_args(None, false);
         Ok(Self {
             name: name.to_owned(),
             opened: methods::open_bytes(name, bytes, &draw_args)?,
@@ -159,34 +149,22 @@ impl Listed {
     }
 }
 
-impl ViewArgs {
-    fn draw_args<'a>(&'a self, engine: &'a EngineArgs, picture: &'a PictureArgs) -> DrawArgs<'a> {
-        DrawArgs {
-            engine,
-            picture,
-            scene: &self.scene,
-            memory: None,
-            is_hashed: false,
-        }
-    }
-}
-
 pub(super) fn run(
     mut args: ViewArgs,
     matches: &ArgMatches,
     console: &Console,
 ) -> Result<(), CliError> {
-    args.camera.check().map_err(CliError::usage)?;
+    args.flags.camera.check().map_err(CliError::usage)?;
     // Scenes are whole: a page crops them.
-    args.scene.crop = None;
-    if !args.picture.aov.is_empty() {
+    args.flags.scene.crop = None;
+    if !args.flags.picture.aov.is_empty() {
         return Err(CliError::usage(
             "--aov is for render; the page shows the same buffers as overlays",
         ));
     }
-    if let Some(size) = args.picture.size {
+    if let Some(size) = args.flags.picture.size {
         let size = [size.width, size.height];
-        shiftvox_view::check_size(size, 1 << args.picture.aa_log2())
+        shiftvox_view::check_size(size, 1 << args.flags.picture.aa_log2())
             .map_err(|reason| CliError::new(Kind::Limit, reason))?;
     }
     let mut server = listen(SocketAddr::new(args.bind, args.port))?;

@@ -6,7 +6,6 @@ use shiftvox::drawing::Buffers;
 use shiftvox::picture::npy::Values;
 use shiftvox::picture::{Buffer, Rows};
 
-use super::heat;
 use crate::error::CliError;
 
 const NOTHING: [u8; 4] = [24, 26, 30, 255];
@@ -19,11 +18,11 @@ pub(super) fn colors(buffers: &Buffers<'_>, buffer: Buffer) -> Result<Painted, C
     let values = buffers.rows(buffer, rows)?;
     Ok(match (buffer, values) {
         (Buffer::Records, Values::F32(records)) => {
-            let (colors, most) = heat::colors(&records);
+            let (colors, most) = heat(&records);
             // The scale is logarithmic.
             let values = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| (1.0 + most).powf(share) - 1.0);
             let name = |value: f32| format!("{value:.1}");
-            (colors, named(&values, heat::colors(&values).0, name))
+            (colors, named(&values, heat(&values).0, name))
         }
         (Buffer::Depth, Values::F32(depths)) => depth(&depths),
         (Buffer::Normal, Values::F32(normals)) => (
@@ -46,6 +45,37 @@ fn named<T: Copy>(
         .map(|&value| name(value))
         .zip(colors)
         .collect()
+}
+
+/// Colours from little to much: dark violet, blue, green, yellow.
+const HEAT: [[f32; 3]; 5] = [
+    [68.0, 1.0, 84.0],
+    [59.0, 82.0, 139.0],
+    [33.0, 145.0, 140.0],
+    [94.0, 201.0, 98.0],
+    [253.0, 231.0, 37.0],
+];
+
+/// Records by sample, as colours on a logarithmic scale, and the greatest
+/// number. A record counts 1, spread evenly over its quadtree node's samples.
+fn heat(records: &[f32]) -> (Vec<[u8; 4]>, f32) {
+    let most = records.iter().copied().fold(0.0f32, f32::max);
+    let scale = libm::log1pf(most).max(f32::MIN_POSITIVE);
+    let pixels = records
+        .iter()
+        .map(|&count| heat_color(libm::log1pf(count) / scale));
+    (pixels.collect(), most)
+}
+
+fn heat_color(share: f32) -> [u8; 4] {
+    let place = share.clamp(0.0, 1.0) * (HEAT.len() - 1) as f32;
+    let first = (place as usize).min(HEAT.len() - 2);
+    let along = place - first as f32;
+    let [r, g, b] = std::array::from_fn(|k| {
+        let (from, to) = (HEAT[first][k], HEAT[first + 1][k]);
+        libm::roundf(from + (to - from) * along) as u8
+    });
+    [r, g, b, 255]
 }
 
 const AXES: [(&str, [f32; 3]); 6] = [
@@ -120,6 +150,14 @@ fn level(voxels: &[[i32; 4]]) -> Painted {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn none_is_dark_and_most_is_bright() {
+        let (pixels, most) = heat(&[0.0, 3.0, 15.0]);
+        // Half of the way: log 4 is half of log 16.
+        let expected = [[68, 1, 84, 255], [33, 145, 140, 255], [253, 231, 37, 255]];
+        assert_eq!((&pixels[..], most), (&expected[..], 15.0));
+    }
 
     #[test]
     fn near_is_bright_and_nothing_is_dark() {

@@ -23,8 +23,8 @@ pub struct Variant {
     pub about: &'static str,
     /// Changes the frame's settings, for techniques that are settings.
     pub adjust: fn(&mut SetupOptions),
-    /// Makes the engine, for techniques that the engine switches.
-    pub make: MakeEngine,
+    /// Makes the engine, for techniques that the engine switches. None: the family's own.
+    pub make: Option<MakeEngine>,
 }
 
 /// An engine and the variants that are measured beside it.

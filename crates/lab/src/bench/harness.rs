@@ -134,7 +134,7 @@ impl BenchError {
     }
 }
 
-/// A picture whose memory is touched before the first frame.
+/// A picture whose memory is touched before its first frame is timed.
 fn colors(width: u32, height: u32) -> Colors {
     let mut colors = Colors::new(width, height);
     colors.words.fill(1);
@@ -173,9 +173,6 @@ impl<'p> Harness<'p> {
             if let Entry::Vacant(place) = self.pools.entry(contender.threads) {
                 place.insert(pool(contender.threads)?);
             }
-            let (width, height) = (contender.setup.width, contender.setup.height);
-            let buffer = self.buffers.entry((width, height));
-            buffer.or_insert_with(|| colors(width, height));
             let (frame, stats) = self.whole_frame(contender)?;
             look(place, &frame);
             counters.push(stats);
@@ -192,20 +189,12 @@ impl<'p> Harness<'p> {
         Ok(times.into_iter().zip(counters).collect())
     }
 
-    fn in_pool<T: Send>(&self, threads: usize, work: impl FnOnce() -> T + Send) -> T {
-        match self.pools.get(&threads) {
-            Some(pool) => pool.install(work),
-            None => work(),
-        }
-    }
-
     fn whole_frame(&self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
         let (setup, graph) = (&contender.setup, contender.graph.view());
         let mut frame = Frame::new(setup.width, setup.height, false);
         let engine = &mut contender.engine;
-        let stats = self.in_pool(contender.threads, || {
-            engine.render(&graph, setup, &mut frame)
-        });
+        let pool = &self.pools[&contender.threads];
+        let stats = pool.install(|| engine.render(&graph, setup, &mut frame));
         let stats = stats.map_err(|source| contender.failed(source))?;
         Ok((frame, stats))
     }
@@ -214,16 +203,16 @@ impl<'p> Harness<'p> {
     fn frame(&mut self, contender: &mut Contender<'_>) -> Result<Elapsed, BenchError> {
         let (setup, graph) = (&contender.setup, contender.graph);
         let size = (setup.width, setup.height);
-        let mut colors = self.buffers.remove(&size);
-        let colors_of = colors.get_or_insert_with(|| Colors::new(size.0, size.1));
+        let buffer = self.buffers.entry(size);
+        let colors = buffer.or_insert_with(|| colors(size.0, size.1));
         let engine = &mut contender.engine;
-        let (elapsed, drawn) = self.in_pool(contender.threads, || {
+        let pool = &self.pools[&contender.threads];
+        let (elapsed, drawn) = pool.install(|| {
             let clock = Clock::start();
-            let drawn = engine.draw_colors(&graph.view(), &graph.color, setup, colors_of);
-            black_box(colors_of.words.as_slice());
+            let drawn = engine.draw_colors(&graph.view(), &graph.color, setup, colors);
+            black_box(colors.words.as_slice());
             (clock.elapsed(), drawn)
         });
-        self.buffers.extend(colors.map(|colors| (size, colors)));
         drawn.map_err(|source| contender.failed(source))?;
         Ok(elapsed)
     }

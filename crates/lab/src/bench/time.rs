@@ -64,26 +64,23 @@ pub fn measure(
             let frame = frame::exact(&subject.graph.view(), &setup);
             exact.push(frame.map_err(BenchError::of_exact_rays)?.voxel);
             for family in plan.families {
-                let one = [1];
-                let threads = match family.whole.parallel {
-                    true => plan.threads,
-                    false => &one,
-                };
-                let whole = std::iter::once(None);
-                for variant in whole.chain(family.variants.iter().map(Some)) {
+                let whole = &family.whole;
+                let threads = if whole.parallel { plan.threads } else { &[1] };
+                let variants = family.variants.iter().map(Some);
+                for variant in std::iter::once(None).chain(variants) {
                     let mut options = plan.options;
-                    let whole = &family.whole;
                     let (name, about, make) = match variant {
                         None => (EVERYTHING_ON, whole.about, whole.make),
                         Some(variant) => {
                             (variant.adjust)(&mut options);
-                            (variant.name, variant.about, variant.make)
+                            let make = variant.make.unwrap_or(whole.make);
+                            (variant.name, variant.about, make)
                         }
                     };
                     let setup = subject.setup(size, &options)?;
                     for &threads in threads {
                         contenders.push(Contender {
-                            name: format!("{}, {}, {name}", subject.name, family.whole.name),
+                            name: format!("{}, {}, {name}", subject.name, whole.name),
                             graph: &subject.graph,
                             setup: setup.clone(),
                             threads,

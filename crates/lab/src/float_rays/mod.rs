@@ -82,20 +82,16 @@ struct Rays {
 impl Rays {
     /// Inverts the frame's view: once a frame, in `f64`.
     fn new(setup: &FrameSetup) -> Self {
-        let edge = setup.edge_clip.map(|e| e.map(|c| c as f64));
-        let origin = setup.origin_clip.map(|c| c as f64);
-        let normal = [0, 1, 2].map(|k| cross(edge[(k + 1) % 3], edge[(k + 2) % 3]));
-        let determinant = dot(normal[0], edge[0]);
+        let (voxels, eye) = inverse(setup);
         let side = (1u64 << setup.depth) as f64;
-        // Object coordinates, in cubes, of a clip vector.
-        let object = |clip: [f64; 3]| normal.map(|n| dot(n, clip) / determinant / side);
+        let object = |clip: [f64; 3]| voxels(clip).map(|c| c / side);
         let sample = 1.0 / (1u64 << setup.levels) as f64;
         // The first sample's centre is half a sample from the corner.
         let first = object([sample / 2.0, sample / 2.0, 1.0]);
         let longest = first.iter().fold(0.0f64, |most, c| most.max(c.abs()));
         let unit = 1.0 / longest;
         Self {
-            eye: object(origin.map(|c| -c)).map(|c| 1.0 + c),
+            eye: eye.map(|c| 1.0 + c / side),
             first: first.map(|c| c * unit),
             right: object([sample, 0.0, 0.0]).map(|c| c * unit),
             down: object([0.0, sample, 0.0]).map(|c| c * unit),
@@ -119,6 +115,16 @@ impl Rays {
         let origin = std::array::from_fn(|k| (self.eye[k] + direction[k] * start) as f32);
         (origin, direction.map(|c| c as f32))
     }
+}
+
+/// The inverse of a frame's view: the object's coordinates of a clip vector, and those of the eye, in voxels.
+pub(crate) fn inverse(setup: &FrameSetup) -> (impl Fn([f64; 3]) -> [f64; 3], [f64; 3]) {
+    let edge = setup.edge_clip.map(|e| e.map(|c| c as f64));
+    let normal = [0, 1, 2].map(|k| cross(edge[(k + 1) % 3], edge[(k + 2) % 3]));
+    let determinant = dot(normal[0], edge[0]);
+    let object = move |clip: [f64; 3]| normal.map(|n| dot(n, clip) / determinant);
+    let eye = object(setup.origin_clip.map(|c| -(c as f64)));
+    (object, eye)
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

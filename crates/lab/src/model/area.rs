@@ -290,21 +290,14 @@ pub fn of_rays(
 ) -> Result<DesignArea, CostError> {
     let (counter, shifts, cycles) = (&cast.counter, &cast.shifts, &cast.cycles);
     let mut area = units(counter, shifts, cycles, None, hardware, prices)?;
-    let (word, wide) = (
-        u64::from(cast.format.bits()),
-        u64::from(cast.format.wide().bits()),
-    );
+    let [word, wide] = [cast.format, cast.format.wide()].map(|of| u64::from(of.bits()));
     let lanes = u64::from(hardware.lanes);
     area.register_bits("sums of the rays", lanes * 6 * wide, prices)?;
     // A lane reads one sum at a time, and its contexts share a memory for their stacks. Both favour the ray caster.
     let sums = (hardware.lanes, cast.format.wide().bits(), 1);
     let bits = lanes * cast.steps * 6 * wide;
     area.memory("steps of the sums", bits, sums, prices)?;
-    let node = if hardware.organisation.bricks {
-        64 + BRICK_BITS
-    } else {
-        64
-    };
+    let node = 64 + BRICK_BITS * u64::from(hardware.organisation.bricks);
     let contexts = hardware.all_contexts() * (RAY_WORDS * word + RAY_BITS + node);
     area.register_bits("rays of the contexts", contexts, prices)?;
     let stacks = hardware.all_contexts() * 8 * rival.stack_bytes();

@@ -4,10 +4,7 @@
 //! is optimistic: delays are without wires, flip-flops and earlier units of the same step, and a tree of units is checked
 //! as one unit. A unit that misses the clock here misses it in hardware; the converse does not hold.
 
-use std::collections::BTreeSet;
-
-use hwmodel::cost::{CostError, CostTable, Goal, unit_of};
-use hwmodel::count::Counter;
+use hwmodel::cost::{CostError, unit_of};
 use hwmodel::cycles::Hardware;
 use hwmodel::{OpClass, Stage};
 use serde::Serialize;
@@ -75,20 +72,9 @@ impl ClockCheck {
 
 /// Compares units that a frame uses with the clock.
 pub fn check(
-    counter: &Counter,
-    hardware: &Hardware,
-    prices: &Prices,
-) -> Result<ClockCheck, CostError> {
-    let cells = counter.cells();
-    let used: BTreeSet<(Stage, OpClass)> = cells.map(|cell| (cell.stage, cell.class)).collect();
-    compare(used, hardware, &prices.table, prices.goal)
-}
-
-fn compare(
     used: impl IntoIterator<Item = (Stage, OpClass)>,
     hardware: &Hardware,
-    table: &CostTable,
-    goal: Goal,
+    prices: &Prices,
 ) -> Result<ClockCheck, CostError> {
     let period_ps = 1e6 / hardware.clock_mhz;
     let mut units = Vec::new();
@@ -97,7 +83,9 @@ fn compare(
         let Some(unit) = hardware.unit(stage, class) else {
             continue;
         };
-        let delay = table.delay(unit_of(class), unit.width, goal)?;
+        let delay = prices
+            .table
+            .delay(unit_of(class), unit.width, prices.goal)?;
         let depth = unit.latency.saturating_add(1);
         longest_step = longest_step.max(delay.high / f64::from(depth));
         units.push(UnitDelay {
@@ -144,10 +132,9 @@ mod tests {
             hardware.stages.clear();
             let add = hardware.units.get_mut(&OpClass::Add).unwrap();
             (add.latency, add.width) = (latency, width);
-            let table = CostTable::load_shipped().unwrap();
             let used =
                 [OpClass::Add, OpClass::Shift].map(|class| (RecordStage::Centre.into(), class));
-            let check = compare(used, &hardware, &table, Goal::Area).unwrap();
+            let check = check(used, &hardware, &Prices::shipped().unwrap()).unwrap();
             let [unit] = &check.units[..] else {
                 panic!("{check:?}");
             };

@@ -32,10 +32,11 @@ impl LightDesign {
         let widths = frame::widths(setup, graph, hardware);
         let area = area::light(counted, cycles, setup, hardware, prices)?;
         let cost = cost::frame_cost(counted, cycles, &widths, setup, hardware, prices)?;
+        let used = counted.counter.sum_by(|cell| (cell.stage, cell.class));
         Ok(Self {
             cost: cost.whole(LIGHT, &area, (cycles.cycles, hardware.clock_mhz), prices)?,
             area,
-            clock: clock::check(&counted.counter, hardware, prices)?,
+            clock: clock::check(used.into_keys(), hardware, prices)?,
         })
     }
 }

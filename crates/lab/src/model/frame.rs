@@ -73,17 +73,13 @@ pub(super) fn in_words(setup: &FrameSetup, organisation: Organisation) -> Cow<'_
 pub fn count(
     graph: &Graph,
     setup: &FrameSetup,
-    hardware: &Hardware,
+    organisation: Organisation,
     overflow: Overflow,
 ) -> Result<Counted, EngineError> {
-    let setup = &*in_words(setup, hardware.organisation);
+    let setup = &*in_words(setup, organisation);
     let mut frame = Frame::new(setup.width, setup.height, false);
     let light = lights(graph, setup, Shading::Lambert)?;
-    let view = GraphView {
-        light: &light,
-        ..graph.view()
-    };
-    let organisation = hardware.organisation;
+    let view = graph.lit(&light);
     let records = RecordProbe::new(bits_by_kind(setup, graph.len(), organisation));
     let probes = ((Counter::new(), ShiftProbe::new()), records);
     let mut machine = machine(overflow, organisation);
@@ -95,21 +91,8 @@ pub fn count(
         shifts,
         records,
         stats,
-        fields: record_fields(setup, graph.len(), hardware.organisation),
+        fields: record_fields(setup, graph.len(), organisation),
     })
-}
-
-/// Draws a frame and counts operations alone.
-pub fn count_operations(
-    graph: &GraphView<'_>,
-    setup: &FrameSetup,
-    overflow: Overflow,
-) -> Result<(Frame, Counter, Stats), EngineError> {
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let probe = Counter::new();
-    let mut machine = machine(overflow, Organisation::default());
-    let (stats, counter) = machine.render_probed(graph, setup, &mut frame, probe)?;
-    Ok((frame, counter, stats))
 }
 
 /// Simulates a frame on hardware, cycle by cycle.
@@ -122,20 +105,11 @@ pub fn simulate(
 ) -> Result<(Frame, Simulated), ModelError> {
     let setup = &*in_words(setup, hardware.organisation);
     let mut frame = Frame::new(setup.width, setup.height, false);
-    let hardware = with_records(graph, setup, hardware);
+    let mut hardware = hardware.clone();
+    hardware.stack.record = bits_by_kind(setup, graph.mask.len(), hardware.organisation);
     let mut machine = machine(overflow, hardware.organisation);
     let simulated = machine.simulate(graph, setup, &mut frame, &hardware, observer)?;
     Ok((frame, simulated))
-}
-
-pub(super) fn with_records(
-    graph: &GraphView<'_>,
-    setup: &FrameSetup,
-    hardware: &Hardware,
-) -> Hardware {
-    let mut hardware = hardware.clone();
-    hardware.stack.record = bits_by_kind(setup, graph.mask.len(), hardware.organisation);
-    hardware
 }
 
 /// The view against which errors are measured, whatever the format of what is measured: 64 bits, the exact rule.

@@ -71,18 +71,14 @@ pub fn price(
         ..FrameCost::default()
     };
     let area = area::of_rays(cast, rival, hardware, prices)?;
+    let pace = (cycles.cycles, hardware.clock_mhz);
     Ok(RayCasterReport {
         rival: rival.clone(),
         records: cycles.records,
         operations: counter.ops(),
         operation_counts: counter.cells().collect(),
         accesses: counter.accesses().collect(),
-        cost: cost.whole(
-            RAY_CASTER,
-            &area,
-            (cycles.cycles, hardware.clock_mhz),
-            prices,
-        )?,
+        cost: cost.whole(RAY_CASTER, &area, pace, prices)?,
         cycles: cycles.clone(),
         area,
         error: CoverageError::between(&cast.frame.voxel, &exact.voxel),
@@ -109,40 +105,26 @@ fn on_chip(
         sum.of_bytes(Some(bytes));
         Ok(())
     };
-    let rays = cast
-        .counter
-        .records_by_level()
-        .next()
-        .map_or(0, |(_, rays)| rays);
+    let first = cast.counter.records_by_level().next();
+    let rays = first.map_or(0, |(_, rays)| rays);
     let sums = 6 * cast.format.wide().bits();
     let bytes = (cast.steps * u64::from(sums)).div_ceil(8).max(1);
     push("steps of the sums", "sram_read", bytes, sums, rays / 2)?;
     let (nodes, attributes) = (&hardware.node_cache, &hardware.attribute_cache);
     let (reads, _) = accesses(&cast.counter, Memory::Node);
-    let from_cache = match (&hardware.node_buffer, cast.cycles.node_buffer) {
+    let (bits, times) = match (&hardware.node_buffer, cast.cycles.node_buffer) {
         (Some(buffer), Some(report)) => {
             let bytes = u64::from(buffer.bytes);
             let line = 8 * buffer.line_bytes;
-            push(
-                "node buffer",
-                "sram_read",
-                bytes,
-                8 * buffer.entry_bytes,
-                reads,
-            )?;
+            let entry = 8 * buffer.entry_bytes;
+            push("node buffer", "sram_read", bytes, entry, reads)?;
             push("node buffer", "sram_write", bytes, line, report.misses)?;
             (line, report.misses)
         }
         _ => (8 * nodes.entry_bytes, reads),
     };
-    let (bits, times) = from_cache;
-    push(
-        Memory::Node.name(),
-        "sram_read",
-        u64::from(nodes.bytes),
-        bits,
-        times,
-    )?;
+    let bytes = u64::from(nodes.bytes);
+    push(Memory::Node.name(), "sram_read", bytes, bits, times)?;
     let (reads, _) = accesses(&cast.counter, Memory::Attribute);
     let (bytes, bits) = (u64::from(attributes.bytes), 8 * attributes.entry_bytes);
     push(Memory::Attribute.name(), "sram_read", bytes, bits, reads)?;

@@ -3,13 +3,15 @@
 //! Numbers have the bits of their greatest value. Coordinates have those of the frame's format or, if packed, the width that
 //! set-up proves sufficient. Clip and screen space share bits, because a record is in one of them.
 
+use hwmodel::Overflow;
 use hwmodel::cycles::{Organisation, StackHolds};
 use hwmodel::memory::RecordBits;
 use serde::Serialize;
 
+use super::frame::machine;
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
-use shiftvox::machine::{Machine, MachineOptions, NumberSpan, RecordNumber, proven_widths};
+use shiftvox::machine::{NumberSpan, RecordNumber, proven_widths};
 use shiftvox::project::vector::cross;
 use shiftvox::project::{CageKind, EngineError, FrameSetup};
 
@@ -47,18 +49,16 @@ fn cage_parts(setup: &FrameSetup) -> (u32, u32) {
 pub fn record_fields(
     setup: &FrameSetup,
     nodes: usize,
-    organisation: Organisation,
+    mut organisation: Organisation,
 ) -> Vec<RecordField> {
     use FieldPresence::{Always, AsFinestVoxel, InClipSpace, InScreenSpace};
     let word = setup.format.bits();
     let wide = setup.format.wide().bits();
     let (corners, edges) = cage_parts(setup);
     let exact = setup.options.coverage.draws_outlines();
-    let organisation = if exact {
-        organisation
-    } else {
-        organisation.without_outlines()
-    };
+    if !exact {
+        organisation = organisation.without_outlines();
+    }
     let proven = proven_widths(setup, nodes).filter(|_| organisation.packed);
     let bits_of = |number: RecordNumber, otherwise: u32| match &proven {
         Some(proven) => proven.numbers[&number].bits().min(otherwise),
@@ -172,10 +172,7 @@ pub fn number_widths(
     let Some(proven) = proven_widths(setup, graph.len()) else {
         return Ok(Vec::new());
     };
-    let mut machine = Machine::new(MachineOptions {
-        organisation,
-        ..MachineOptions::default()
-    });
+    let mut machine = machine(Overflow::default(), organisation);
     let mut frame = Frame::new(setup.width, setup.height, false);
     let seen = machine.seen_numbers(&graph.view(), setup, &mut frame)?;
     let word = setup.format.bits();

@@ -19,7 +19,7 @@ use super::fill_bits;
 use super::frame::{self, Counted};
 use super::ray_caster::RayCasterReport;
 use super::record::{self, NumberWidths, RecordField};
-use super::verdict::{self, ComparedLine, Design};
+use super::verdict::{self, ComparedLine};
 use crate::measure::CoverageError;
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
@@ -74,32 +74,13 @@ pub struct Drawn<'a> {
 
 impl Report {
     pub fn new(drawn: Drawn<'_>, hardware: Hardware, prices: &Prices) -> Result<Self, ModelError> {
-        let Drawn {
-            graph,
-            setup,
-            counted,
-            simulated,
-            picture,
-            exact,
-            ray_caster,
-        } = drawn;
-        let cycles = &simulated.cycles;
+        let (graph, setup, counted) = (drawn.graph, drawn.setup, drawn.counted);
+        let (rays, cycles) = (&drawn.ray_caster, &drawn.simulated.cycles);
         let LightDesign { cost, area, clock } =
             LightDesign::price(graph, setup, counted, cycles, &hardware, prices)?;
-        let light = Design {
-            cost: &cost,
-            area: &area,
-            cycles: cycles.cycles,
-            frames_per_second: cycles.frames_per_second,
-        };
-        let rival = Design {
-            cost: &ray_caster.cost,
-            area: &ray_caster.area,
-            cycles: ray_caster.cycles.cycles,
-            frames_per_second: ray_caster.cycles.frames_per_second,
-        };
-        let comparison = verdict::lines(light, rival, prices);
-        let differing_samples = counted.differing(picture);
+        let rival = (&rays.cost, &rays.area, &rays.cycles);
+        let comparison = verdict::lines((&cost, &area, cycles), rival, prices);
+        let differing_samples = counted.differing(drawn.picture);
         let counter = &counted.counter;
         Ok(Self {
             word: json!({
@@ -121,17 +102,17 @@ impl Report {
             accumulator_bits: cost::accumulator_bits(setup),
             same_picture: differing_samples == 0,
             differing_samples,
-            coverage_error: CoverageError::between(&counted.frame.voxel, &exact.voxel),
+            coverage_error: CoverageError::between(&counted.frame.voxel, &drawn.exact.voxel),
             clock_says: clock.sentence(),
             hardware,
-            simulated,
+            simulated: drawn.simulated,
             cost,
             area,
             clock,
             technology: prices.table.technology(),
             technology_says: prices.table.technology().sentence(),
             comparison,
-            ray_caster,
+            ray_caster: drawn.ray_caster,
         })
     }
 }

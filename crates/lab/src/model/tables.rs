@@ -4,7 +4,6 @@ use serde_json::Value;
 
 use crate::report::{Cell, Table};
 
-/// A table of a document.
 #[derive(Debug, Clone, Copy)]
 pub struct TableSpec {
     pub title: &'static str,

@@ -8,25 +8,18 @@
 use std::collections::BTreeMap;
 
 use hwmodel::cost::{Breakdown, Cost, CostTable, Fit, Line};
+use hwmodel::cycles::CycleReport;
 use serde::{Deserialize, Serialize};
 
 use super::area::DesignArea;
 use super::cost::{FrameCost, Prices};
 use shiftvox::split_mix::SplitMix;
 
-/// Number of draws.
 pub const DRAWS: usize = 4000;
 /// A normal variable lies within this many standard deviations of its mean in 90 % of all cases.
 const NINETY: f64 = 1.6449;
 
-/// One design's figures.
-#[derive(Debug, Clone, Copy)]
-pub struct Design<'a> {
-    pub cost: &'a FrameCost,
-    pub area: &'a DesignArea,
-    pub cycles: u64,
-    pub frames_per_second: f64,
-}
+pub type Design<'a> = (&'a FrameCost, &'a DesignArea, &'a CycleReport);
 
 /// The light hardware's share of the ray caster's figure.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -68,7 +61,7 @@ type Parts = fn(&FrameCost) -> Vec<&Breakdown>;
 /// Both designs, figure by figure.
 pub fn lines(light: Design<'_>, ray_caster: Design<'_>, prices: &Prices) -> Vec<ComparedLine> {
     let both = [light, ray_caster];
-    let energies = |parts: Parts| both.map(|of| parts(of.cost));
+    let energies = |parts: Parts| both.map(|(cost, ..)| parts(cost));
     let line = |what, unit, [light, ray_caster]: [f64; 2]| ComparedLine {
         what,
         unit,
@@ -85,8 +78,8 @@ pub fn lines(light: Design<'_>, ray_caster: Design<'_>, prices: &Prices) -> Vec<
         }
     };
     let micro = 1e-6;
-    let bits = both.map(|of| of.cost.traffic.bits() as f64);
-    let area = both.map(|of| of.area.parts().to_vec());
+    let bits = both.map(|(cost, ..)| cost.traffic.bits() as f64);
+    let area = both.map(|(_, area, _)| area.parts().to_vec());
     let energy = Priced::Energy;
     let part = |what, of: Parts| priced(what, "uJ", micro, energies(of), energy);
     let mut lines = vec![
@@ -99,10 +92,14 @@ pub fn lines(light: Design<'_>, ray_caster: Design<'_>, prices: &Prices) -> Vec<
         part("energy of the frame", |of| of.parts().to_vec()),
     ];
     if let Some(ComparedLine { verdict, .. }) = lines.last_mut() {
-        *verdict = Some(of_energy(light.cost, ray_caster.cost, &prices.table));
+        *verdict = Some(of_energy(light.0, ray_caster.0, &prices.table));
     }
-    lines.push(line("cycles", "", both.map(|of| of.cycles as f64)));
-    let power = |of: Design<'_>| of.cost.total() * of.frames_per_second / 1e12;
+    lines.push(line(
+        "cycles",
+        "",
+        both.map(|(.., cycles)| cycles.cycles as f64),
+    ));
+    let power = |(cost, _, cycles): Design<'_>| cost.total() * cycles.frames_per_second / 1e12;
     lines.push(line("power at its own speed", "W", both.map(power)));
     lines.push(line(
         "traffic to outer memory",
@@ -134,7 +131,6 @@ fn total(bill: &[&Breakdown]) -> f64 {
     bill.iter().map(|part| part.total).sum()
 }
 
-/// The quantity of a bill.
 #[derive(Debug, Clone, Copy)]
 enum Priced<'a> {
     Energy,

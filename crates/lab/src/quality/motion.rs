@@ -2,26 +2,24 @@
 
 use shiftvox::project::{Camera, CameraError};
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Motion {
-    /// Around its target, about its up direction, by so many degrees per frame.
-    Turntable(f64),
-    /// Towards its target, by this part of the distance per frame.
-    Dolly(f64),
-    /// To the right without turning, by so many pixels per frame at the target's distance.
-    Pan(f64),
+    /// Half a degree around the target per frame.
+    Turntable,
+    /// A hundredth of the way towards the target per frame.
+    Dolly,
+    /// An eighth of a pixel to the right per frame.
+    Pan,
 }
 
 impl Motion {
-    /// Half a degree, a hundredth, an eighth of a pixel.
-    pub const ALL: [Self; 3] = [Self::Turntable(0.5), Self::Dolly(0.01), Self::Pan(0.125)];
-
     /// Columns of its film: flicker, and that of the worst step.
     pub(super) fn columns(&self) -> [&'static str; 2] {
         match self {
-            Self::Turntable(_) => ["flicker_turntable", "flicker_turntable_worst"],
-            Self::Dolly(_) => ["flicker_dolly", "flicker_dolly_worst"],
-            Self::Pan(_) => ["flicker_pan", "flicker_pan_worst"],
+            Self::Turntable => ["flicker_turntable", "flicker_turntable_worst"],
+            Self::Dolly => ["flicker_dolly", "flicker_dolly_worst"],
+            Self::Pan => ["flicker_pan", "flicker_pan_worst"],
         }
     }
 
@@ -31,19 +29,19 @@ impl Motion {
         let to_eye = camera.eye - camera.target;
         let mut moved = *camera;
         match self {
-            Self::Turntable(degrees) => {
-                let (sin, cos) = libm::sincos((degrees * frames).to_radians());
+            Self::Turntable => {
+                let (sin, cos) = libm::sincos((0.5 * frames).to_radians());
                 let axis = camera.up.normalize_or_zero();
                 let along = axis * axis.dot(to_eye);
                 moved.eye =
                     camera.target + along + (to_eye - along) * cos + axis.cross(to_eye) * sin;
             }
-            Self::Dolly(share) => {
-                moved.eye = camera.target + to_eye * libm::pow(1.0 - share, frames);
+            Self::Dolly => {
+                moved.eye = camera.target + to_eye * libm::pow(0.99, frames);
             }
-            Self::Pan(pixels) => {
+            Self::Pan => {
                 let pixel = to_eye.length() / axes.focal_px;
-                let by = axes.right * (pixel * pixels * frames);
+                let by = axes.right * (pixel * 0.125 * frames);
                 moved.eye += by;
                 moved.target += by;
             }
@@ -86,10 +84,10 @@ mod tests {
     fn motions_end_where_they_should() {
         // 90 degrees over 100 pixels from 5 away: a pixel is a tenth.
         for (motion, frames, eye, target) in [
-            (Motion::Turntable(45.0), 2, [2.0, 4.0, 7.0], [2.0, 1.0, 3.0]),
-            (Motion::Dolly(0.5), 2, [2.75, 1.0, 4.0], [2.0, 1.0, 3.0]),
-            (Motion::Pan(0.5), 4, [5.0, 1.2, 7.0], [2.0, 1.2, 3.0]),
-            (Motion::Pan(0.5), 0, [5.0, 1.0, 7.0], [2.0, 1.0, 3.0]),
+            (Motion::Turntable, 180, [2.0, 4.0, 7.0], [2.0, 1.0, 3.0]),
+            (Motion::Dolly, 2, [4.9403, 1.0, 6.9204], [2.0, 1.0, 3.0]),
+            (Motion::Pan, 16, [5.0, 1.2, 7.0], [2.0, 1.2, 3.0]),
+            (Motion::Pan, 0, [5.0, 1.0, 7.0], [2.0, 1.0, 3.0]),
         ] {
             let moved = motion.after(&CAMERA, frames).unwrap();
             let off = moved.eye.distance(eye.into()) + moved.target.distance(target.into());

@@ -146,11 +146,10 @@ mod tests {
     use super::*;
     use glam::DVec3;
 
-    use shiftvox::frame::Frame;
+    use crate::model::frame::exact;
     use shiftvox::graph::{LinkedGraph, Silent};
     use shiftvox::picture::resolve;
-    use shiftvox::project::{Engine, SetupOptions};
-    use shiftvox::rays::Rays;
+    use shiftvox::project::SetupOptions;
 
     /// The cube `[0, 1]^3`, seen along y: its near face is `side` pixels a side and begins at pixel
     /// `(left, left)` of 8 x 8.
@@ -191,10 +190,7 @@ mod tests {
     #[test]
     fn one_stratum_without_jitter_is_the_oracles_picture() {
         let (graph, setup) = facing(2.3, 3.1);
-        let mut frame = Frame::new(8, 8, false);
-        Rays::default()
-            .render(&graph.view(), &setup, &mut frame)
-            .unwrap();
+        let frame = exact(&graph.view(), &setup).unwrap();
         let background = Background::default();
         let picture = resolve(&frame, &graph, &setup, Shading::Lambert, background).unwrap();
         let view = graph.view();

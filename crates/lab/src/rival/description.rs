@@ -24,10 +24,8 @@ hwmodel::stages! {
     }
 }
 
-/// A ray caster.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(missing_docs, reason = "`rival.toml` explains each setting")]
 pub struct Rival {
     pub name: String,
     pub bits: u32,
@@ -42,10 +40,8 @@ pub struct Rival {
     pub node_buffer: Option<Cache>,
 }
 
-/// The stack of a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(missing_docs, reason = "`rival.toml` explains each setting")]
 pub struct RivalStack {
     pub entries: u32,
     pub entry_bits: u32,
@@ -57,7 +53,6 @@ impl Rival {
     /// The text of the description that ships.
     pub const SHIPPED: &str = include_str!("rival.toml");
 
-    /// The description that ships.
     pub fn shipped() -> Self {
         match Self::from_toml(Self::SHIPPED) {
             Ok(rival) => rival,

@@ -1,7 +1,7 @@
 //! The rays of a frame as the host prepares them: sums that change by constants from ray to ray.
 
+use crate::float_rays::inverse;
 use shiftvox::project::FrameSetup;
-use shiftvox::project::vector::cross;
 
 /// A ray's direction and its moments about the object's lowest corner, six components, in units of the last place.
 pub(super) type Sums = [i64; 6];
@@ -21,15 +21,8 @@ pub(super) struct View {
 
 impl View {
     pub(super) fn new(setup: &FrameSetup, bits: u32, wide_bits: u32) -> Self {
-        let edge = setup.edge_clip.map(|e| e.map(|c| c as f64));
-        let origin = setup.origin_clip.map(|c| c as f64);
-        let normal = [0, 1, 2].map(|k| cross(edge[(k + 1) % 3], edge[(k + 2) % 3]));
-        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let determinant = dot(normal[0], edge[0]);
-        // In voxels.
-        let object = |clip: [f64; 3]| normal.map(|n| dot(n, clip) / determinant);
+        let (object, eye) = inverse(setup);
         let sample = 1.0 / (1u64 << setup.levels) as f64;
-        let eye = object(origin.map(|c| -c));
         let with_moments = |d: [f64; 3]| {
             let moment = |k: usize| eye[k] * d[(k + 1) % 3] - eye[(k + 1) % 3] * d[k];
             [d[0], d[1], d[2], moment(0), moment(1), moment(2)]

@@ -15,12 +15,9 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, GraphView, NodeLayout};
 use shiftvox::project::{EngineError, FrameSetup};
 
-/// A frame of rays.
 #[derive(Debug)]
 pub struct Cast {
-    /// Its picture.
     pub frame: Frame,
-    /// Its cycles.
     pub cycles: CycleReport,
     /// Its operations and accesses. Accesses of nodes are those of the node buffer, if there is one.
     pub counter: Counter,

@@ -142,11 +142,7 @@ impl Case {
     }
 
     pub(super) fn setup(&self, graph: &Graph) -> Result<FrameSetup, SetupError> {
-        FrameSetup::new(
-            &self.world_camera(),
-            &self.placement(graph),
-            graph.depth,
-            &self.options,
-        )
+        let (camera, placement) = (self.world_camera(), self.placement(graph));
+        FrameSetup::new(&camera, &placement, graph.depth, &self.options)
     }
 }

@@ -35,15 +35,10 @@ fn cast(graph: &Graph, setup: &FrameSetup) -> Frame {
 
 impl Oracle {
     fn picture(&mut self, graph: &Graph, setup: &FrameSetup) -> Frame {
-        let same = |last: &FrameSetup| {
-            last.origin_clip == setup.origin_clip
-                && last.edge_clip == setup.edge_clip
-                && last.sub_levels == setup.sub_levels
-                && (last.width, last.height, last.levels)
-                    == (setup.width, setup.height, setup.levels)
-        };
+        let view = |of: &FrameSetup| (of.origin_clip, of.edge_clip, of.sub_levels);
+        let size = |of: &FrameSetup| (of.width, of.height, of.levels);
         if let Some((last, frame)) = &self.last
-            && same(last)
+            && (view(last), size(last)) == (view(setup), size(setup))
         {
             return frame.clone();
         }

@@ -66,29 +66,20 @@ impl Tally {
         tally
     }
 
-    fn sums(&mut self) -> [&mut u64; 12] {
-        [
-            &mut self.cases,
-            &mut self.drawn,
-            &mut self.trapped,
-            &mut self.refused,
-            &mut self.cut_off,
-            &mut self.failed,
-            &mut self.inside,
-            &mut self.holes,
-            &mut self.order,
-            &mut self.covered,
-            &mut self.extra,
-            &mut self.missing,
-        ]
-    }
-
     fn merge(&mut self, other: &Self) {
-        let mut other = other.clone();
+        self.cases += other.cases;
+        self.drawn += other.drawn;
+        self.trapped += other.trapped;
+        self.refused += other.refused;
+        self.cut_off += other.cut_off;
+        self.failed += other.failed;
+        self.inside += other.inside;
+        self.holes += other.holes;
+        self.order += other.order;
+        self.covered += other.covered;
+        self.extra += other.extra;
+        self.missing += other.missing;
         self.most_records = self.most_records.max(other.most_records);
-        for (sum, more) in self.sums().into_iter().zip(other.sums()) {
-            *sum += *more;
-        }
     }
 }
 

@@ -8,9 +8,9 @@ use super::findings::{Findings, Key};
 use super::outcome::Outcome;
 use super::scene::StressScene;
 use super::subject::{Product, Subject};
-use super::viewpoint::{Viewpoint, viewpoints};
+use super::viewpoint::viewpoints;
 use shiftvox::graph::{Graph, Progress};
-use shiftvox::project::{CageKind, Coverage, SetupOptions};
+use shiftvox::project::{CageKind, Camera, Coverage, SetupOptions};
 use shiftvox::split_mix::SplitMix;
 
 #[derive(Debug, Clone, PartialEq)]
@@ -118,7 +118,8 @@ fn rules() -> Vec<SetupOptions> {
 struct Job<'p> {
     scene: usize,
     graph: &'p Graph,
-    viewpoint: Viewpoint,
+    camera: Camera,
+    shift: i64,
     salt: u64,
 }
 
@@ -142,11 +143,12 @@ pub(super) fn sweep_of(
         for &pixels in &plan.pixels {
             let mut numbers = SplitMix::new(plan.seed ^ (scene as u64) << 32);
             let views = viewpoints(graph.depth, pixels, plan.random_viewpoints, &mut numbers);
-            for viewpoint in views {
+            for (camera, shift) in views {
                 jobs.push(Job {
                     scene,
                     graph,
-                    viewpoint,
+                    camera,
+                    shift,
                     salt: numbers.bits(),
                 });
             }
@@ -195,8 +197,8 @@ fn run_job(subject: &dyn Subject, plan: &SweepPlan, job: &Job<'_>) -> Findings {
                 };
                 let case = Case {
                     scene: plan.scenes[job.scene].clone(),
-                    camera: job.viewpoint.camera,
-                    shift: job.viewpoint.shift,
+                    camera: job.camera,
+                    shift: job.shift,
                     options,
                 };
                 let outcome = check(subject, &case, job.graph, plan.most_records, &mut oracle);

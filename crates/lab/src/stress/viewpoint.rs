@@ -5,18 +5,14 @@ use glam::DVec3;
 use shiftvox::project::Camera;
 use shiftvox::split_mix::SplitMix;
 
-pub(super) struct Viewpoint {
-    pub(super) camera: Camera,
-    pub(super) shift: i64,
-}
-
-/// The standard viewpoints of a cube of `2^depth` voxels, in pictures of `pixels` per side, and `random` more.
+/// The standard viewpoints of a cube of `2^depth` voxels, in pictures of `pixels` per side, and `random` more: camera
+/// and shift.
 pub(super) fn viewpoints(
     depth: u32,
     pixels: u32,
     random: u32,
     numbers: &mut SplitMix,
-) -> Vec<Viewpoint> {
+) -> Vec<(Camera, i64)> {
     let side = (1u64 << depth) as f64;
     let v = DVec3::new;
     let middle = DVec3::splat(side / 2.0);
@@ -65,13 +61,11 @@ pub(super) fn viewpoints(
     let viewpoint = |(eye, target, fov_degrees, shift): (DVec3, DVec3, _, _)| {
         let forward = target - eye;
         let is_vertical = forward.x.abs() + forward.y.abs() < 1e-3 * forward.length();
-        Viewpoint {
-            camera: Camera {
-                up: if is_vertical { DVec3::Y } else { DVec3::Z },
-                ..Camera::looking(eye, target, fov_degrees, (pixels, pixels))
-            },
-            shift,
-        }
+        let camera = Camera {
+            up: if is_vertical { DVec3::Y } else { DVec3::Z },
+            ..Camera::looking(eye, target, fov_degrees, (pixels, pixels))
+        };
+        (camera, shift)
     };
     views.into_iter().map(viewpoint).collect()
 }

@@ -92,7 +92,7 @@ fn figures_of_a_terrain() {
     hardware.stack.entries = 8;
     let prices = Prices::shipped().unwrap();
     let view = graph.view();
-    let counted = frame::count(&graph, &setup, &hardware, Overflow::Trap).unwrap();
+    let counted = frame::count(&graph, &setup, hardware.organisation, Overflow::Trap).unwrap();
     let simulated =
         frame::simulate(&view, &setup, &hardware, Overflow::Trap, &mut NoObserver).unwrap();
     let cycles = &simulated.1.cycles;

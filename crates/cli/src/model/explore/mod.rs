@@ -37,7 +37,8 @@ struct Explorations {
 }
 
 pub(super) fn run(space: &str, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
-    let text = text_of(space)?;
+    let told = ["space", "write one like those that --print-space prints"];
+    let text = document::named_settings(space, &SPACES, Path::new(""), told)?;
     if args.explore.print_space {
         return console.data(text.trim_end());
     }
@@ -80,14 +81,7 @@ pub(super) fn run(space: &str, args: &ModelArgs, console: &Console) -> Result<()
             (Some(file), recorded)
         }
     };
-    let asked = Asked {
-        args,
-        space: &space,
-        picked,
-        prices: &prices,
-        rival: &rival,
-        console,
-    };
+    let options = args.setup_options();
     let mut found = Vec::new();
     for (subject, header) in &scenes {
         let name = &subject.name;
@@ -105,7 +99,16 @@ pub(super) fn run(space: &str, args: &ModelArgs, console: &Console) -> Result<()
         let known = known
             .map(|((_, number), line)| (*number, line.clone()))
             .collect();
-        let points = measure(&asked, subject, known, &mut file);
+        let explored = Explored {
+            graph: &subject.graph,
+            camera: &subject.camera,
+            options: &options,
+            overflow: args.rules.overflow(),
+            rival: &rival,
+            prices: &prices,
+        };
+        let of_space = (&space, picked.clone());
+        let points = measure(explored, name, of_space, known, &mut file, console);
         let points = points.map_err(|error| error.at(name))?;
         found.push(Explorations {
             scene: name.clone(),
@@ -115,23 +118,6 @@ pub(super) fn run(space: &str, args: &ModelArgs, console: &Console) -> Result<()
         });
     }
     output::write(&found, args, console)
-}
-
-fn text_of(name: &str) -> Result<String, CliError> {
-    if let Some((_, text)) = SPACES.iter().find(|(of, _)| *of == name) {
-        return Ok((*text).to_owned());
-    }
-    if !Path::new(name).exists() {
-        let names: Vec<&str> = SPACES.iter().map(|(name, _)| *name).collect();
-        let advice = format!(
-            "take one of {}, or write one like those that --print-space prints",
-            names.join(", ")
-        );
-        return Err(
-            CliError::input(format!("no space and no file is called {name}")).advise(advice),
-        );
-    }
-    document::read_settings(Path::new(name))
 }
 
 fn open_space(name: &str, text: &str, hardware: Option<&str>) -> Result<Space, CliError> {
@@ -203,43 +189,23 @@ fn header(
     )
 }
 
-struct Asked<'a> {
-    args: &'a ModelArgs,
-    space: &'a Space,
-    picked: Range<usize>,
-    prices: &'a Prices,
-    rival: &'a Rival,
-    console: &'a Console,
-}
-
 fn measure(
-    asked: &Asked<'_>,
-    subject: &Subject,
+    explored: Explored<'_>,
+    scene: &str,
+    (space, picked): (&Space, Range<usize>),
     mut known: BTreeMap<usize, PointLine>,
     file: &mut Option<ResultsFile>,
+    console: &Console,
 ) -> Result<Vec<PointLine>, CliError> {
-    let (picked, console) = (&asked.picked, asked.console);
     let wanted = picked.clone().filter(|number| !known.contains_key(number));
-    let points = wanted.map(|number| asked.space.point(number));
+    let points = wanted.map(|number| space.point(number));
     let points = points
         .collect::<Result<Vec<Point>, _>>()
         .map_err(CliError::input)?;
     if points.len() < picked.len() {
         let there = picked.len() - points.len();
-        console.note(format!(
-            "{}: {there} points are there already",
-            subject.name
-        ));
+        console.note(format!("{scene}: {there} points are there already"));
     }
-    let options = asked.args.setup_options();
-    let explored = Explored {
-        graph: &subject.graph,
-        camera: &subject.camera,
-        options: &options,
-        overflow: asked.args.rules.overflow(),
-        rival: asked.rival,
-        prices: asked.prices,
-    };
     let mut next = picked.start;
     let mut print_up_to = |known: &BTreeMap<usize, PointLine>, end: usize| {
         for line in known.range(next..end).map(|(_, line)| line) {
@@ -251,7 +217,7 @@ fn measure(
     if !points.is_empty() {
         let (known, print_up_to) = (&mut known, &mut print_up_to);
         explore::explore(explored, &points, console.progress(), |point, outcome| {
-            let line = PointLine::new(&subject.name, point, outcome);
+            let line = PointLine::new(scene, point, outcome);
             if let Some(file) = file {
                 file.append(&line.to_json())?;
             }

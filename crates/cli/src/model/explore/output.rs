@@ -165,15 +165,8 @@ fn shares(of: &Explorations) -> Option<Chart> {
         let Some(figures) = line.figures() else {
             continue;
         };
-        let others = PointLine {
-            values: line
-                .values
-                .clone()
-                .into_iter()
-                .filter(|(key, _)| key != "size")
-                .collect(),
-            ..line.clone()
-        };
+        let mut others = line.clone();
+        others.values.remove("size");
         let name = values(&others, &of.points);
         let curve = Series::of_name(&mut curves, &name, true);
         curve.points.push((size, figures.verdict.median).into());
@@ -211,10 +204,8 @@ fn times(of: &Explorations) -> Chart {
         of_name.points.push(point);
         let rival = &figures.ray_caster;
         let share = rival.cycles as f64 / figures.cycles.max(1) as f64;
-        rays.push(Point::from((
-            figures.time_ms * share,
-            rival.energy_pj / 1e6,
-        )));
+        let place = (figures.time_ms * share, rival.energy_pj / 1e6);
+        rays.push(place.into());
     }
     series.push(Series {
         grey: true,

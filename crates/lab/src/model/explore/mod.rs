@@ -215,7 +215,7 @@ impl<'a> Shared<'a> {
         }
         let count = |(key, point): (String, &Point)| {
             let counted = shared.setup(point).and_then(|setup| {
-                frame::count(of.graph, setup, &point.hardware, of.overflow)
+                frame::count(of.graph, setup, point.hardware.organisation, of.overflow)
                     .map_err(|error| error.to_string())
             });
             (key, counted)

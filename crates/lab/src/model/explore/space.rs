@@ -163,7 +163,6 @@ impl Space {
         sizes.fold(1, usize::saturating_mul)
     }
 
-    /// A point.
     pub fn point(&self, number: usize) -> Result<Point, SpaceError> {
         let mut rest = number;
         let mut values = Vec::new();

@@ -18,10 +18,10 @@ use hwmodel::cycles::Organisation;
 
 pub use folder::check_free;
 
+use super::frame::machine;
 use recorder::Recorder;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{GraphView, NodeLayout, PackedNormal};
-use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{EngineError, FrameSetup};
 use shiftvox::whole::{self, WholeError};
 
@@ -60,8 +60,6 @@ pub enum VectorsError {
     Store(#[from] WholeError),
     #[error("a value at block {0} does not fit its wires: use wider words")]
     Misfit(&'static str),
-    #[error("{0}")]
-    Manifest(#[from] serde_json::Error),
 }
 
 pub fn write(
@@ -77,11 +75,7 @@ pub fn write(
             false => request.organisation.without_outlines(),
         };
         let layout = NodeLayout::new(graph, organisation.leaf_masks, organisation.bricks);
-        let mut machine = Machine::new(MachineOptions {
-            overflow: request.overflow,
-            organisation,
-            ..MachineOptions::default()
-        });
+        let mut machine = machine(request.overflow, organisation);
         let recorder = Recorder::new(folder, setup, request.records, organisation.stack)?;
         let (stats, mut recorder) = machine.render_probed(graph, setup, &mut frame, recorder)?;
         recorder.begin_directed();
@@ -90,10 +84,7 @@ pub fn write(
         let found = (&recordings[..], turns.as_ref());
         let manifest = manifest::document(setup, request, graph.mask.len(), &stats, found);
         let mut files = vec![
-            (
-                folder::MANIFEST,
-                serde_json::to_string_pretty(&manifest)? + "\n",
-            ),
+            (folder::MANIFEST, format!("{manifest:#}\n")),
             (
                 frame_image::CONSTANTS,
                 frame_image::constants(setup, graph, &layout),

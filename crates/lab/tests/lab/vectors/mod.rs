@@ -211,10 +211,7 @@ fn rows_are_what_the_blocks_give_and_are_there_where_they_should() {
         println!("scene {scene}, {options:?}");
         let (graph, camera) = &scenes[scene];
         let light = lights(graph);
-        let lit = GraphView {
-            light: &light,
-            ..graph.view()
-        };
+        let lit = graph.lit(&light);
         let (_shelter, folder, recorded) = written(&lit, &setup(graph, camera, &options), 150);
         let (counts, proven) = replay_folder(&folder, &mut missed);
         assert_eq!(counts.values().sum::<usize>() as u64, recorded.rows);
