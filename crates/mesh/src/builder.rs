@@ -293,7 +293,10 @@ impl Mesh {
 fn leave_out_clear(mesh: &mut Mesh) {
     let numbers = (0..mesh.triangles.len()).into_par_iter();
     let is_shown: Vec<bool> = numbers.map(|n| !is_clear(&mesh.triangle(n))).collect();
-    if is_shown.contains(&true) && is_shown.contains(&false) {
+    if !is_shown.contains(&true) {
+        let told = "no triangle is seen: the textures are clear wherever a triangle shows them";
+        mesh.warnings.push(told.to_owned());
+    } else if is_shown.contains(&false) {
         mesh.keep(&is_shown);
     }
 }

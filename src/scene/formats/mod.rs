@@ -177,6 +177,7 @@ pub(super) fn advice(file: &str) -> &'static str {
     let ending = ending.to_ascii_lowercase();
     match &ending[..] {
         "step" | "stp" => "; FreeCAD exports it as glTF",
+        "las" | "laz" | "e57" => "; convert these points: pdal translate IN OUT.ply",
         other if OTHERS.contains(&other) => {
             "; convert this one to glTF: Blender exports it, or assimp export IN OUT.glb"
         }

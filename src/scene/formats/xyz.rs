@@ -72,11 +72,12 @@ pub(super) fn read(
     Ok(info)
 }
 
-/// The words of a line, or `None` of a comment or a blank line.
+/// The words of a line, or `None` of a comment, the names of columns, or a blank line.
 fn words(line: &[u8]) -> Option<impl Iterator<Item = &[u8]>> {
     let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line);
     let text = line.trim_ascii();
     let is_data = !text.is_empty() && !text.starts_with(b"#") && !text.starts_with(b"//");
+    let is_data = is_data && !text.starts_with(b"x") && !text.starts_with(b"X");
     let ends = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, b',' | b';');
     is_data.then(|| text.split(ends).filter(|word| !word.is_empty()))
 }

@@ -58,7 +58,9 @@ pub(super) fn read(bytes: &[u8], colors: ColorSpace) -> Library {
         let line = line.trim();
         let (key, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
         let (key, rest) = (key.to_ascii_lowercase(), rest.trim());
-        let mut numbers = rest.split_whitespace().map(|word| word.parse::<f32>().ok());
+        let words = rest.split_whitespace();
+        let words = words.take_while(|word| !word.starts_with('#'));
+        let mut numbers = words.map(|word| word.parse::<f32>().ok());
         let is_understood = match (&key[..], found.last_mut()) {
             ("newmtl", _) => {
                 found.push(Found {
@@ -88,7 +90,7 @@ pub(super) fn read(bytes: &[u8], colors: ColorSpace) -> Library {
             }
             ("d" | "tr", Some(last)) => {
                 // `d -halo 0.5` is opacity too.
-                let value = numbers.next_back().flatten().filter(|v| v.is_finite());
+                let value = numbers.last().flatten().filter(|v| v.is_finite());
                 if let Some(value) = value {
                     last.alpha = if key == "d" { value } else { 1.0 - value };
                 }

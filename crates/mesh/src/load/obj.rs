@@ -5,7 +5,6 @@
 
 use std::collections::HashMap;
 use std::path::Path;
-use std::str::SplitWhitespace;
 
 use super::mtl::{self, Pictures};
 use super::texture::{Parts, Textures};
@@ -82,6 +81,8 @@ impl File {
             return Ok(());
         };
         let rest = || line.trim_start()[keyword.len()..].trim();
+        // Behind numbers. Names may have such a mark.
+        let mut words = words.take_while(|word| !word.starts_with('#'));
         let wrong = |part: &str, expected: &str| {
             let advice = "correct the line, or export the mesh again";
             let found = shown(line.trim_end_matches(['\n', '\r']));
@@ -327,7 +328,7 @@ fn all<T: Copy>(corners: [[u32; 3]; 3], part: usize, list: &[T]) -> Option<[T; 3
     Some([a?, b?, c?])
 }
 
-fn numbers<const N: usize>(words: &mut SplitWhitespace<'_>) -> Option<[f64; N]> {
+fn numbers<'t, const N: usize>(words: &mut impl Iterator<Item = &'t str>) -> Option<[f64; N]> {
     let mut numbers = [0.0; N];
     for number in &mut numbers {
         *number = words.next()?.parse().ok()?;

@@ -57,8 +57,12 @@ impl Picture {
             let format = known.map_or(if is_tga { "TGA" } else { "" }, |(_, format)| format);
             return Err(match format {
                 "" => "it is neither PNG nor JPEG".to_owned(),
+                "KTX2" => {
+                    "it is KTX2; in glTF, convert it with gltf-transform ktxdecompress".to_owned()
+                }
                 _ => format!(
-                    "it is {format}; convert it to PNG, for example with magick, or in glTF with gltf-transform png"
+                    "it is {format}; convert it to PNG, for example with magick, or in glTF with \
+                     gltf-transform png --formats \"*\""
                 ),
             });
         }

@@ -99,6 +99,27 @@ fn spokes(radius: f64) -> Mesh {
     })
 }
 
+/// A flat square, whose voxels have few probes each.
+#[test]
+fn sheets_have_no_pinholes() {
+    let mesh = shape(|builder| {
+        sheet(builder, [40, 40], 0, |i, j| {
+            DVec3::new(f64::from(i), f64::from(j), 0.0)
+        });
+    });
+    let file = file_of(&build(&mesh, &BuildOptions::default(), &Silent).unwrap());
+    for (size, towards) in [(60, DVec3::Z), (60, -DVec3::Z), (40, DVec3::Z)] {
+        let view = around(&mesh, towards, 1.5, size);
+        let whole = triangles(&mesh, &view, 16, None).coverage;
+        let drawn = draw(&file, &view, &ViewOptions::default()).0.coverage;
+        let within = whole.iter().zip(&drawn).filter(|(whole, _)| **whole == 1.0);
+        let (count, sum) = within.fold((0, 0.0), |(n, sum), (_, drawn)| (n + 1, sum + drawn));
+        let mean = sum / count as f32;
+        // Voxels of the edge are half empty.
+        assert!(count > 700 && mean > 0.99, "{size}: {mean} of {count}");
+    }
+}
+
 /// Within a tenth if thinner than a voxel. Spokes of two voxels, of which some hide others, grow by less than a quarter.
 #[test]
 fn thin_tubes_keep_their_area() {

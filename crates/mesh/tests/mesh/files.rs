@@ -94,7 +94,7 @@ fn obj_files_may_have_coloured_vertices_and_odd_lines() {
     );
     assert_eq!(mesh.vertex_colors()[..2], [[255; 3], [0, 128, 0]]);
     assert_eq!(mesh.warnings(), [""; 0]);
-    let text = "v 0 0 0 200 60.4 10\nv 1 0 0 255 1 0\nv 1 1 0 0 0 0\nf 1 2 3\n";
+    let text = "v 0 0 0 200 60.4 10\nv 1 0 0 255 1 0 # a\nv 1 1 0 0 0 0\nf 1 2 3 #b\n";
     let mesh = load(text.as_bytes(), MeshFormat::Obj).unwrap();
     assert_eq!(mesh.vertex_colors(), [[200, 60, 10], [255, 1, 0], [0; 3]]);
     has(mesh.warnings(), &["taken as 0 to 255"]);

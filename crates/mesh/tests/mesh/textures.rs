@@ -270,7 +270,9 @@ fn gltf_files_have_textures() {
     let mesh = read(&path);
     has(
         mesh.warnings(),
-        &["PNG or JPEG picture, but that of EXT_texture_webp; convert it with gltf-transform png"],
+        &[
+            "PNG or JPEG picture, but that of EXT_texture_webp; convert it with gltf-transform png --formats",
+        ],
     );
     check(&mesh, 0, plain, 0.001);
 }

@@ -46,20 +46,24 @@ pub(super) fn fit_shader(samples: &[SurfaceSample], normal: DVec3) -> ShaderFit 
     flat
 }
 
-/// A side that nothing looks upon is solid: it is hidden.
-fn solid_from(side: &[Found; STEEPNESSES]) -> usize {
-    let mut solid = STEEPNESSES;
-    let mut probes = 0;
-    for (steepness, found) in side.iter().enumerate().rev() {
-        if found.passed > MOST_PASSED * (found.passed + found.stopped) {
+/// The steepness from which on a side is solid; all of a side that nothing looks upon, as it is hidden. Chance gives some
+/// sides of a sheet few probes that are not grazing. The other side's count too, where it lets none pass either.
+fn solid_from(side: &[Found; STEEPNESSES], other: &[Found; STEEPNESSES]) -> usize {
+    let lets_pass = |found: &Found| found.passed > MOST_PASSED * (found.passed + found.stopped);
+    let (mut solid, mut own, mut both) = (STEEPNESSES, 0, 0);
+    let mut counts_other = true;
+    for (steepness, (found, other)) in side.iter().zip(other).enumerate().rev() {
+        if lets_pass(found) {
             return solid;
         }
-        probes += found.probes;
-        if probes >= LEAST_PROBES {
+        counts_other &= !lets_pass(other);
+        own += found.probes;
+        both += found.probes + if counts_other { other.probes } else { 0 };
+        if own >= LEAST_PROBES || steepness > 0 && own > 0 && both >= LEAST_PROBES {
             solid = steepness;
         }
     }
-    if probes == 0 { 0 } else { solid }
+    if own == 0 { 0 } else { solid }
 }
 
 pub(super) fn fit(seen: &Seen, shader: Shader, most: Opacity) -> Voxel {
@@ -76,7 +80,7 @@ pub(super) fn fit(seen: &Seen, shader: Shader, most: Opacity) -> Voxel {
             let counted = Counted::default();
             return (counted, STEEPNESSES, seen.unseen_opacity);
         }
-        let solid = solid_from(&seen.found[side]);
+        let solid = solid_from(&seen.found[side], &seen.found[1 - side]);
         let rest = seen.counted_below(side, solid);
         (rest, solid, rest.scalar())
     });

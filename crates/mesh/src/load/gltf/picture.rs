@@ -67,7 +67,11 @@ pub(super) fn find(
         let image = image.ok_or_else(|| {
             let other = found.and_then(|texture| texture.extensions.as_object()?.keys().next());
             let other = other.map_or(String::new(), |name| {
-                format!(", but that of {name}; convert it with gltf-transform png")
+                let command = match &name[..] {
+                    "KHR_texture_basisu" => "ktxdecompress",
+                    _ => "png --formats \"*\"",
+                };
+                format!(", but that of {name}; convert it with gltf-transform {command}")
             });
             missing(&format!("it has no PNG or JPEG picture{other}"))
         })?;
