@@ -26,8 +26,5 @@ pub(crate) fn run(bytes: &[u8]) {
     };
     let result = read_voxels_from(&scene.file().bytes(), "fuzz", &options, sink, &Silent);
     assert!(count <= MOST);
-    if let Ok(info) = result {
-        assert_eq!(info.voxels, count);
-        assert!(is_wild || last.iter().eq(scene.voxels().keys()));
-    }
+    assert!(is_wild || result.is_err() || last.iter().eq(scene.voxels().keys()));
 }

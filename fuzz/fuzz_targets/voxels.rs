@@ -25,9 +25,6 @@ pub(crate) fn run(ending: &str, bytes: &[u8]) {
         most_voxels: MOST,
     };
     let mut count = 0u64;
-    let result = read_voxels_from(&bytes, "fuzz", &options, &mut |_| count += 1, &Silent);
+    let _ = read_voxels_from(&bytes, "fuzz", &options, &mut |_| count += 1, &Silent);
     assert!(count <= MOST);
-    if let Ok(info) = result {
-        assert_eq!(info.voxels, count);
-    }
 }

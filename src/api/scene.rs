@@ -222,7 +222,7 @@ impl Scene {
 impl From<Opened> for Scene {
     fn from(opened: Opened) -> Self {
         Self {
-            warnings: opened.info.map(|info| info.warnings).unwrap_or_default(),
+            warnings: opened.info.warnings,
             is_verified: opened.is_verified,
             mapped: opened.mapped,
             ..opened.graph.into()

@@ -179,12 +179,9 @@ impl<R: Read + Seek> SceneFile<R> {
         };
         let name = self.name();
         progress.begin(&format!("reading {name}"), 0);
-        let mut emitter = Emitter::new(sink, options.most_voxels, progress);
+        let mut emitter = Emitter::new(sink, options, progress);
         let mut input = Input::new(&mut self.stream, self.length);
-        let result = read(&mut input, options, &mut emitter).map(|mut info| {
-            emitter.finish(&mut info);
-            info
-        });
+        let result = read(&mut input, &mut emitter).map(|()| emitter.finish());
         progress.end();
         result.map_err(|problem| problem.in_file(&name))
     }

@@ -37,7 +37,7 @@ pub struct Opened {
     /// The voxels, at least one.
     pub graph: Graph,
     pub format: String,
-    pub info: Option<SceneInfo>,
+    pub info: SceneInfo,
     pub mesh: Option<MeshSummary>,
     /// `false` for a graph file larger than [`OpenOptions::verify_up_to`].
     pub is_verified: bool,
@@ -50,7 +50,7 @@ impl Opened {
         Self {
             graph,
             format: format.to_string(),
-            info: None,
+            info: SceneInfo::default(),
             mesh: None,
             is_verified: true,
             mapped: None,
@@ -124,7 +124,7 @@ fn open_file<R: Read + Seek>(
     let info = read?;
     let graph = gathered.finish(&name, placement(&info), progress)?;
     Ok(Opened {
-        info: Some(info),
+        info,
         ..Opened::of(graph, ending)
     })
 }
@@ -153,7 +153,7 @@ fn open_mesh(
     graph.placement.mesh = Some(mesh.mesh_box());
     mesh.finish(&mut graph, progress);
     Ok(Opened {
-        info: Some(info),
+        info,
         mesh: Some(summary),
         ..Opened::of(graph, format)
     })

@@ -154,10 +154,10 @@ fn files_of_every_format_are_built_the_same() {
         let file = fs::read(&path).unwrap();
         let expected = bytes_of(&opened.graph);
         assert_eq!(difference(&file, &expected), None, "{source}");
-        let counts = (built.voxels, built.bytes, built.info);
+        let counts = (built.voxels, built.bytes, built.warnings);
         assert_eq!(
             counts,
-            (opened.graph.voxels, file.len() as u64, opened.info)
+            (opened.graph.voxels, file.len() as u64, opened.info.warnings)
         );
     }
     // A graph is no list of voxels.

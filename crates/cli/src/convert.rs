@@ -227,7 +227,7 @@ fn build_outside_memory(
         what: "voxels",
         count: built.voxels,
         bytes: built.bytes,
-        warnings: built.info.map(|info| info.warnings).unwrap_or_default(),
+        warnings: built.warnings,
     };
     written.report("convert", &args.input, &args.output, console);
     Ok(())

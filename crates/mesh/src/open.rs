@@ -219,28 +219,9 @@ impl MeshVoxels for Ready {
         progress: &dyn Progress,
     ) -> (SceneInfo, MeshSummary) {
         let started = Instant::now();
-        let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
-        let report = voxelize::voxelize(
-            &self.mesh,
-            &self.grid,
-            self.opacities,
-            &mut |voxel| {
-                for k in 0..3 {
-                    low[k] = low[k].min(voxel.index[k]);
-                    high[k] = high[k].max(voxel.index[k]);
-                }
-                sink(voxel);
-            },
-            progress,
-        );
+        let report = voxelize::voxelize(&self.mesh, &self.grid, self.opacities, sink, progress);
         let voxelize_ms = started.elapsed().as_secs_f64() * 1e3;
         let info = SceneInfo {
-            voxels: report.voxels,
-            bounds: (report.voxels > 0).then_some((low, high)),
-            models: 1,
-            instances: 1,
-            has_colors: true,
-            has_normals: true,
             warnings: self.mesh.warnings().to_vec(),
             ..SceneInfo::default()
         };

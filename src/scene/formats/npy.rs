@@ -5,11 +5,11 @@
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
 use super::cloud::Cloud;
+use crate::scene::DEFAULT_COLOR;
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem, printable};
 use crate::scene::input::Input;
 use crate::scene::numbers::{Number, Scalar};
-use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
 const BLOCK_ROWS: u64 = 4096;
 const MAX_HEADER: u64 = 1 << 16;
@@ -42,9 +42,8 @@ impl Layout {
 
 pub(super) fn read(
     Input { reader, length }: &mut Input<'_>,
-    options: &ReadOptions,
     emitter: &mut Emitter<'_>,
-) -> Result<SceneInfo, Problem> {
+) -> Result<(), Problem> {
     let layout = read_header(reader, *length)?;
     let needed = u128::from(layout.rows) * u128::from(layout.columns * layout.width());
     let there = u128::from(length.saturating_sub(layout.data));
@@ -53,17 +52,13 @@ pub(super) fn read(
         let advice = "the file is cut short; save or copy it again";
         return Err(Fault::new("array", layout.data, expected, there.to_string(), advice).into());
     }
-    let mut info = SceneInfo {
-        has_colors: layout.columns > 3,
-        ..SceneInfo::default()
-    };
     if needed < there {
         let more = there - needed;
-        info.warnings.push(format!(
+        emitter.info.warnings.push(format!(
             "{more} bytes after the end of the array were not read"
         ));
     }
-    let (mut block, mut cloud) = (Vec::new(), Cloud::new(options));
+    let (mut block, mut cloud) = (Vec::new(), Cloud::new(emitter.options));
     for first in (0..layout.rows).step_by(BLOCK_ROWS as usize) {
         let rows = BLOCK_ROWS.min(layout.rows - first);
         read_block(reader, &layout, first, rows, &mut block).map_err(Problem::Read)?;
@@ -71,8 +66,7 @@ pub(super) fn read(
             pass_on(&layout, &block, (first, rows, row), &mut cloud, emitter)?;
         }
     }
-    cloud.finish(&mut info)?;
-    Ok(info)
+    cloud.finish(&mut emitter.info)
 }
 
 fn read_block<R: Read + Seek>(

@@ -5,12 +5,12 @@ use glam::DVec3;
 use super::cloud::Cloud;
 use super::xyz::MAX_LINE;
 use crate::graph::KnownNormals;
+use crate::scene::DEFAULT_COLOR;
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem, printable};
 use crate::scene::input::Input;
 use crate::scene::numbers::{Number, Scalar};
 use crate::scene::ply::Source;
-use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
 const AGAIN: &str = "the file is damaged or cut short; save or copy it again";
 const MAX_POINT: usize = 1 << 16;
@@ -32,11 +32,7 @@ struct Header {
     is_text: bool,
 }
 
-pub(super) fn read(
-    input: &mut Input<'_>,
-    options: &ReadOptions,
-    emitter: &mut Emitter<'_>,
-) -> Result<SceneInfo, Problem> {
+pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(), Problem> {
     let mut source = Source::new(&mut input.reader);
     let mut header = read_header(&mut source)?;
     let find = |name: &str| header.fields.iter().position(|f| f.name == name.as_bytes());
@@ -54,7 +50,7 @@ pub(super) fn read(
         // Bits that are no number would change on their way through one.
         header.fields[at].scalar = Scalar::U32;
     }
-    let (mut cloud, mut known) = (Cloud::new(options), KnownNormals::default());
+    let (mut cloud, mut known) = (Cloud::new(emitter.options), KnownNormals::default());
     let (mut line, mut values) = (Vec::new(), Vec::new());
     for point in 0..header.points {
         let begin = source.offset;
@@ -93,13 +89,7 @@ pub(super) fn read(
         let position = positions.map(|at| values[at]);
         cloud.point(position, color, normal, |_| part(), emitter)?;
     }
-    let mut info = SceneInfo {
-        has_colors: color.is_some(),
-        has_normals: normals.is_some(),
-        ..SceneInfo::default()
-    };
-    cloud.finish(&mut info)?;
-    Ok(info)
+    cloud.finish(&mut emitter.info)
 }
 
 /// Red, green and blue in the bits of one number, whose type may be `float`.
