@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::Error;
 use super::kept::start_threads;
-use crate::graph::{BuildOptions, Builder, Crop, Graph, Placement, Silent, Voxel, vxg};
+use crate::graph::{Builder, Crop, Graph, Placement, Silent, Voxel, vxg};
 use crate::project::Bounds;
 pub use crate::project::Up;
 use crate::scene::{
@@ -76,7 +76,7 @@ impl Scene {
     /// little memory; [`Error::Threads`] as in [`Scene::open`].
     pub fn from_voxels(voxels: impl IntoIterator<Item = Voxel>) -> Result<Self, Error> {
         start_threads()?;
-        let mut builder = Builder::new(BuildOptions::default());
+        let mut builder = Builder::default();
         for voxel in voxels {
             builder.push(voxel);
         }

@@ -8,7 +8,7 @@ use super::mesh::{MeshReader, MeshSummary, MeshVoxels};
 use super::open_error::OpenError;
 use super::{FileKind, ReadOptions, SceneError, SceneFile, SceneInfo, Source};
 use crate::budget;
-use crate::graph::{BuildOptions, Builder, Graph, Progress, vxg};
+use crate::graph::{Builder, Graph, Progress, vxg};
 
 /// The default limit. Of a larger file, only the pages that a picture needs are read.
 const VERIFY_BYTES: u64 = 1 << 20;
@@ -199,7 +199,7 @@ impl Default for Gathered {
     fn default() -> Self {
         let available = budget::available();
         Self {
-            builder: Builder::new(BuildOptions::default()),
+            builder: Builder::default(),
             available,
             most: available.map_or(u64::MAX, |bytes| bytes / LEAST_BYTES),
             seen: 0,
@@ -213,7 +213,7 @@ impl Gathered {
         if self.seen <= self.most {
             self.builder.push(voxel);
         } else if !self.builder.is_empty() {
-            self.builder = Builder::new(BuildOptions::default());
+            self.builder = Builder::default();
         }
     }
 

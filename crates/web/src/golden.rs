@@ -12,7 +12,7 @@ use hwmodel::count::Counter;
 use shiftvox::Coverage;
 use shiftvox::fast::{Fast, FastOptions, Instructions};
 use shiftvox::frame::Frame;
-use shiftvox::graph::{BuildOptions, Builder, Graph, GraphView, Normals, Opacity, Silent};
+use shiftvox::graph::{Builder, Graph, GraphView, Opacity, Silent};
 use shiftvox::machine::{Machine, RecordStage};
 use shiftvox::project::{CageKind, Camera, Engine, FrameSetup, SetupOptions as Options};
 use shiftvox::rays::Rays;
@@ -190,12 +190,9 @@ fn draw(row: &str, used: &mut Machine) -> (Frame, Option<Counter>) {
     (frame, Some(drawn.expect(row).1))
 }
 
-/// The graph of a generator, or of a file, without normals, which no engine reads.
+/// The graph of a generator, or of a file.
 fn graph_of(name: &str) -> Graph {
-    let options = BuildOptions {
-        normals: Normals::None,
-    };
-    let mut builder = Builder::new(options);
+    let mut builder = Builder::default();
     if name.starts_with("gen:") {
         let spec = Spec::parse(name).expect(name);
         if let Some(graph) = spec.linked() {

@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 use super::pushed::extent;
 use super::vxg::{self, VxgError};
-use super::{BuildError, BuildOptions, MeshBox, Placement, Progress, Voxel};
+use super::{BuildError, MeshBox, Placement, Progress, Voxel};
 use crate::budget::{self, DiskShortage};
 use buffer_sizes::BufferSizes;
 use finest::Finest;
@@ -41,7 +41,6 @@ const GRAPH_BYTES: u64 = 5;
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct ExternalOptions {
-    pub build: BuildOptions,
     /// Limit of memory in bytes, including the program; exceeded below about 64 MB.
     pub memory: u64,
     /// Folder of the temporary files; about 22 bytes per voxel of a surface.
@@ -207,9 +206,8 @@ impl ExternalBuilder {
         let mut tree = TreeWriter::new(depth, &scratch, sizes.spool_bytes);
         let centre = extent.map(|side| side as f64 / 2.0);
         progress.begin("estimate normals, average", voxels);
-        let normals = options.build.normals;
         let [color, normal] = finest
-            .finish(&mut tree, normals, centre, &sizes, &scratch, progress)
+            .finish(&mut tree, centre, &sizes, &scratch, progress)
             .map_err(refused)?;
         let (levels, counts) = tree.finish().map_err(refused)?;
         progress.end();

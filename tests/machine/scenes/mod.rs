@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use shiftvox::graph::{BuildOptions, Builder, Graph, Normals, Silent};
+use shiftvox::graph::{Builder, Graph, Silent};
 use shiftvox::project::Camera;
 use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{ReadOptions, read_voxels};
@@ -14,7 +14,7 @@ use shiftvox::split_mix::SplitMix;
 pub fn graph_of_spec(spec: &str) -> Graph {
     let parsed = Spec::parse(spec).expect(spec);
     parsed.linked().unwrap_or_else(|| {
-        let mut builder = builder();
+        let mut builder = Builder::default();
         parsed.voxels(&mut |voxel| builder.push(voxel), &Silent);
         builder.finish(([0.0; 3], 1.0), &Silent).expect(spec)
     })
@@ -28,18 +28,11 @@ pub fn graph_of(name: &str) -> Graph {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/data")
         .join(name);
-    let mut builder = builder();
+    let mut builder = Builder::default();
     let mut push = |voxel| builder.push(voxel);
     let read = read_voxels(&path, &ReadOptions::default(), &mut push, &Silent);
     read.expect(name);
     builder.finish(([0.0; 3], 1.0), &Silent).expect(name)
-}
-
-/// Without normals, which no engine reads.
-fn builder() -> Builder {
-    Builder::new(BuildOptions {
-        normals: Normals::None,
-    })
 }
 
 /// Lowest corner and side of a graph's cube, world units.

@@ -3,9 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use shiftvox::graph::{
-    BuildOptions, Builder, Graph, LinkedGraph, MAX_DEPTH, Normals, Silent, Voxel,
-};
+use shiftvox::graph::{Builder, Graph, LinkedGraph, MAX_DEPTH, Silent, Voxel};
 use shiftvox::scene::generate::Spec;
 use shiftvox::split_mix::SplitMix;
 
@@ -126,9 +124,7 @@ impl StressScene {
 }
 
 fn built(voxels: Vec<[i32; 3]>) -> Result<Graph, String> {
-    let mut builder = Builder::new(BuildOptions {
-        normals: Normals::None,
-    });
+    let mut builder = Builder::default();
     for index in voxels {
         builder.push(Voxel {
             index,
