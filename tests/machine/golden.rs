@@ -41,7 +41,7 @@ const RECORDED_FRAMES: u32 = 400;
 fn pictures_by_box_and_centre_are_those_recorded() {
     let specs = "terrain,depth=6,seed=3 menger,depth=3 sierpinski,depth=7 shell,depth=5 truss,depth=5 \
                  wires,depth=5";
-    let graph = |spec| graph_of_spec(&format!("gen:{spec}"));
+    let graph = |spec| graph_of(&format!("gen:{spec}"));
     let graphs: Vec<_> = specs.split(' ').map(graph).collect();
     let mut dice = Dice::new(5);
     let mut hash = Xxh3::new();

@@ -12,12 +12,11 @@ use hwmodel::count::Counter;
 use shiftvox::Coverage;
 use shiftvox::fast::{Fast, FastOptions, Instructions};
 use shiftvox::frame::Frame;
-use shiftvox::graph::{Builder, Graph, GraphView, Opacity, Silent};
+use shiftvox::graph::{Graph, GraphView, Opacity, Silent};
 use shiftvox::machine::{Machine, RecordStage};
 use shiftvox::project::{CageKind, Camera, Engine, FrameSetup, SetupOptions as Options};
 use shiftvox::rays::Rays;
-use shiftvox::scene::generate::Spec;
-use shiftvox::scene::{NoMeshes, OpenOptions, open_bytes};
+use shiftvox::scene::{NoMeshes, OpenOptions, Source, open_bytes, open_source};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128_with_seed};
 
 /// The stages in the order in which the identity has their counts.
@@ -192,20 +191,17 @@ fn draw(row: &str, used: &mut Machine) -> (Frame, Option<Counter>) {
 
 /// The graph of a generator, or of a file.
 fn graph_of(name: &str) -> Graph {
-    let mut builder = Builder::default();
-    if name.starts_with("gen:") {
-        let spec = Spec::parse(name).expect(name);
-        if let Some(graph) = spec.linked() {
-            return graph;
-        }
-        spec.voxels(&mut |voxel| builder.push(voxel), &Silent);
-    } else {
-        let (_, bytes) = FILES.iter().find(|(file, _)| *file == name).expect(name);
-        let options = OpenOptions::default();
-        let opened = open_bytes(bytes, name, &options, &NoMeshes, &Silent).expect(name);
-        return opened.graph;
-    }
-    builder.finish(([0.0; 3], 1.0), &Silent).expect(name)
+    let options = OpenOptions::default();
+    let opened = match FILES.iter().find(|(file, _)| *file == name) {
+        Some((_, bytes)) => open_bytes(bytes, name, &options, &NoMeshes, &Silent),
+        None => open_source(
+            Source::Generated(name.to_owned()),
+            &options,
+            &NoMeshes,
+            &Silent,
+        ),
+    };
+    opened.expect(name).graph
 }
 
 /// XXH3-128 of all voxels, then all nodes, then what is blended, little-endian.
