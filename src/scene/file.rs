@@ -74,7 +74,7 @@ impl SceneFile<File> {
 
 impl<'b> SceneFile<Cursor<&'b [u8]>> {
     /// A file that is held in memory; errors call it `name`.
-    pub(super) fn in_memory(bytes: &'b [u8], name: &str) -> Result<Self, SceneError> {
+    pub fn in_memory(bytes: &'b [u8], name: &str) -> Result<Self, SceneError> {
         Self::begin(Cursor::new(bytes), bytes.len() as u64, Path::new(name))
     }
 }
@@ -165,6 +165,7 @@ impl<R: Read + Seek> SceneFile<R> {
         }
     }
 
+    /// Passes each voxel to `sink`. After an error the caller must discard what it received.
     pub fn read_voxels(
         mut self,
         options: &ReadOptions,

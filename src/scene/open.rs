@@ -60,16 +60,6 @@ impl Opened {
 
 /// Opens a file, or makes the scene of a `gen:` specification. Too many voxels for the memory are an error, before they
 /// are read if the file states their number.
-pub fn open(
-    source: &str,
-    options: &OpenOptions,
-    meshes: &dyn MeshReader,
-    progress: &dyn Progress,
-) -> Result<Opened, OpenError> {
-    open_source(Source::find(source)?, options, meshes, progress)
-}
-
-/// [`open`] for a source that was found.
 pub fn open_source(
     source: Source,
     options: &OpenOptions,
@@ -159,7 +149,7 @@ fn open_mesh(
     })
 }
 
-/// [`open`] for a file in memory. A mesh there has no other files.
+/// [`open_source`] for a file in memory. A mesh there has no other files.
 pub fn open_bytes(
     bytes: &[u8],
     name: &str,

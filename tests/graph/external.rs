@@ -141,7 +141,9 @@ fn files_of_every_format_are_built_the_same() {
     let files = files.iter().map(|path| path.to_str().unwrap());
     for source in files.chain(["gen:wires,depth=4", "gen:sierpinski,depth=20"]) {
         let reading = OpenOptions::default();
-        let opened = scene::open(source, &reading, &NoMeshes, &Silent).unwrap();
+        let opened =
+            scene::open_source(Source::find(source).unwrap(), &reading, &NoMeshes, &Silent)
+                .unwrap();
         let built = build_file(source, 10_000, &path).unwrap();
         let file = fs::read(&path).unwrap();
         let expected = bytes_of(&opened.graph);

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use shiftvox::graph::Silent;
 use shiftvox::scene::{
-    NoMeshes, OpenError, OpenOptions, Opened, ReadOptions, SceneError, open_bytes, read_voxels_from,
+    NoMeshes, OpenError, OpenOptions, Opened, ReadOptions, SceneError, SceneFile, open_bytes,
 };
 use shiftvox::split_mix::SplitMix;
 
@@ -85,7 +85,8 @@ fn more_voxels_than_are_wanted_are_refused_before_the_first() {
             ..ReadOptions::default()
         };
         let mut seen = 0u64;
-        let read = read_voxels_from(&file, "slab", &options, &mut |_| seen += 1, &Silent);
+        let file = SceneFile::in_memory(&file, "slab").unwrap();
+        let read = file.read_voxels(&options, &mut |_| seen += 1, &Silent);
         (read, seen)
     };
     let (refused, seen) = count(all - 1);

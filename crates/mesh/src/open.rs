@@ -56,15 +56,6 @@ pub struct OpenOptions {
     pub mesh: MeshOptions,
 }
 
-/// Opens a file of any kind, or makes the scene of a `gen:` specification: [`scene::open`] with meshes.
-pub fn open(
-    source: &str,
-    options: &OpenOptions,
-    progress: &dyn Progress,
-) -> Result<Opened, OpenError> {
-    scene::open(source, &options.voxels, &options.mesh, progress)
-}
-
 /// Opens a file that is held in memory; a mesh finds no other files. [`scene::open_bytes`] with meshes.
 pub fn open_bytes(
     bytes: &[u8],
