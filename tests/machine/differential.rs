@@ -207,17 +207,15 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         // Deep graphs far away may be beyond the fast engine's lanes.
         let may_decline = !is_usual || !outlines || graph.depth > 12 || is_absurd;
         assert!(may_decline || !declined, "{options:?}");
-        if !coverage.blends() {
-            let mut colors = Colors::new(setup.width, setup.height);
-            colors.words.fill(3);
-            let drawn = fast.draw_colors(&view, &graph.color, &setup, &mut colors);
-            drawn.expect("drawn before");
-            let color = |&node: &u32| match node {
-                NO_NODE => 0,
-                node => color_word(graph.color[node as usize]),
-            };
-            assert!(frame.node.iter().map(color).eq(colors.words), "{options:?}");
-        }
+        let mut colors = Colors::new(setup.width, setup.height);
+        colors.words.fill(3);
+        let drawn = fast.draw_colors(&view, &graph.color, &setup, &mut colors);
+        drawn.expect("drawn before");
+        let color = |&node: &u32| match node {
+            NO_NODE => 0,
+            node => color_word(graph.color[node as usize]),
+        };
+        assert!(frame.node.iter().map(color).eq(colors.words), "{options:?}");
     }
     let (right, stats) = drawn.ok()?;
     if coverage == Coverage::Exact {
