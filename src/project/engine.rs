@@ -48,18 +48,8 @@ pub fn stat(stats: &[(&'static str, u64)], name: &str) -> u64 {
 
 /// Draws a frame. The picture depends only on the frame set-up and the graph.
 pub trait Engine {
-    /// Draws like [`Engine::render`], without work that only counters need. Errors: as [`Engine::render`].
-    fn draw(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<(), EngineError> {
-        self.render(graph, setup, frame).map(drop)
-    }
-
-    /// Draws the samples' unlit colours. `of_node` has the colours by graph node. `colors` gets the size of `setup` and
-    /// is cleared first. Previews show this and experiments time it. Errors: as [`Engine::render`].
+    /// Draws the unlit colours of the samples' nodes. `of_node` has the colours by graph node. `colors` gets the size of `setup` and
+    /// is cleared first. Experiments time this. Errors: as [`Engine::render`].
     fn draw_colors(
         &mut self,
         graph: &GraphView<'_>,
@@ -68,7 +58,7 @@ pub trait Engine {
         colors: &mut Colors,
     ) -> Result<(), EngineError> {
         colors.fit(setup.width, setup.height)?;
-        self.draw(graph, setup, colors.nodes())?;
+        self.render(graph, setup, colors.nodes())?;
         colors.take_nodes(of_node);
         Ok(())
     }

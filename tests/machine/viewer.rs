@@ -135,7 +135,7 @@ fn used_engines_and_frames_of_other_sizes_draw_as_new_ones() {
                 kind == 0 && (coverage == Coverage::Any || with_records)
             );
             *frame = Frame::new(3, 5, with_records);
-            assert_eq!(used.draw(&view, &setup, frame), Ok(()), "{what}");
+            assert_eq!(used.render(&view, &setup, frame), Ok(counts), "{what}");
             assert!(*frame == right, "{what}");
             let mut right = Colors::new(size.0, size.1);
             let drawn = new().draw_colors(&view, &graph.color, &setup, &mut right);
