@@ -33,10 +33,6 @@ impl Default for Builder {
 }
 
 impl Builder {
-    pub fn len(&self) -> u64 {
-        self.pushed
-    }
-
     pub fn is_empty(&self) -> bool {
         self.pushed == 0
     }
@@ -135,14 +131,6 @@ impl Placement {
             [0, 1, 2].map(|k| self.world_origin[k] + index(k) * self.voxel_size)
         };
         place::can_be_seen(corner(0.0), corner(side), self.voxel_size)
-    }
-}
-
-impl Extend<Voxel> for Builder {
-    fn extend<I: IntoIterator<Item = Voxel>>(&mut self, voxels: I) {
-        for voxel in voxels {
-            self.push(voxel);
-        }
     }
 }
 

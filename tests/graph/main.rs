@@ -19,7 +19,7 @@ const PLACE: ([f64; 3], f64) = ([0.5, -2.0, 1e3], 0.25);
 
 fn build(voxels: &[Voxel]) -> Graph {
     let mut builder = Builder::default();
-    builder.extend(voxels.iter().copied());
+    voxels.iter().for_each(|&voxel| builder.push(voxel));
     let graph = builder.finish(PLACE, &Silent).unwrap();
     graph.validate().unwrap();
     graph

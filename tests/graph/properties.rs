@@ -117,7 +117,7 @@ fn boxes_of_one_voxel_and_of_the_longest_side() {
     assert_eq!((graph.depth, graph.voxels), (21, 2));
     let refused = |voxels: &[Voxel], place| {
         let mut builder = Builder::default();
-        builder.extend(voxels.iter().copied());
+        voxels.iter().for_each(|&voxel| builder.push(voxel));
         builder.finish(place, &Silent).unwrap_err()
     };
     let (axis, extent) = ('z', (1 << 21) + 1);

@@ -102,14 +102,6 @@ impl ExternalBuilder {
         }
     }
 
-    pub fn len(&self) -> u64 {
-        self.gather.pushed
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// Fails where so many voxels, or their graph, take more disk than is free.
     pub fn expect(&self, voxels: u64, path: &Path) -> Result<(), ExternalError> {
         budget::check_disk(&self.options.temporary, voxels.saturating_mul(RUN_BYTES))?;
