@@ -5,6 +5,7 @@
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
 use super::cloud::Cloud;
+use crate::picture::npy::{entry, lengths};
 use crate::scene::DEFAULT_COLOR;
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem, printable};
@@ -165,7 +166,7 @@ fn fault(offset: u64, expected: impl Into<String>, found: impl Into<String>) -> 
 fn parse_header(text: &[u8], start: u64) -> Result<Layout, Box<Fault>> {
     let value = |key: &str| {
         let missing = || fault(start, format!("an entry '{key}'"), printable(text));
-        value(text, format!("'{key}'").as_bytes()).ok_or_else(missing)
+        entry(text, key).ok_or_else(missing)
     };
     let descr = value("descr")?;
     let (scalar, big_endian) = element_type(descr).ok_or_else(|| {
@@ -182,27 +183,26 @@ fn parse_header(text: &[u8], start: u64) -> Result<Layout, Box<Fault>> {
         ));
     }
     let shape = value("shape")?;
-    let sizes = rows_and_columns(shape).filter(|(_, columns)| [3, 6, 7].contains(columns));
-    let (rows, columns) = sizes.ok_or_else(|| {
+    let sizes = lengths(shape);
+    let Some(&[rows, columns @ (3 | 6 | 7)]) = sizes.as_deref() else {
         let expected = "a shape (N, 3), (N, 6) or (N, 7)";
         let advice = "indices make one row a voxel; for a dense grid, save numpy.argwhere(grid)";
-        Fault::new("header", start, expected, printable(shape), advice)
-    })?;
+        return Err(Fault::new(
+            "header",
+            start,
+            expected,
+            printable(shape),
+            advice,
+        ));
+    };
     Ok(Layout {
         scalar,
         big_endian,
         fortran,
-        rows,
-        columns,
+        rows: rows as u64,
+        columns: columns as u64,
         data: start + text.len() as u64,
     })
-}
-
-/// The text after a key and its colon in a Python dictionary.
-fn value<'t>(text: &'t [u8], key: &[u8]) -> Option<&'t [u8]> {
-    let at = text.windows(key.len()).position(|window| window == key)?;
-    let rest = text[at + key.len()..].trim_ascii_start();
-    Some(rest.strip_prefix(b":")?.trim_ascii_start())
 }
 
 fn element_type(descr: &[u8]) -> Option<(Scalar, bool)> {
@@ -231,13 +231,4 @@ fn element_type(descr: &[u8]) -> Option<(Scalar, bool)> {
         _ => return None,
     };
     Some((scalar, *order == b'>'))
-}
-
-fn rows_and_columns(shape: &[u8]) -> Option<(u64, u64)> {
-    let inside = shape.strip_prefix(b"(")?;
-    let end = inside.iter().position(|b| *b == b')')?;
-    let text = std::str::from_utf8(&inside[..end]).ok()?;
-    let (rows, columns) = text.split_once(',')?;
-    let columns = columns.trim().trim_end_matches(',');
-    Some((rows.trim().parse().ok()?, columns.trim().parse().ok()?))
 }
