@@ -217,18 +217,5 @@ fn element_type(descr: &[u8]) -> Option<(Scalar, bool)> {
     else {
         return None;
     };
-    let scalar = match [*kind, *width] {
-        [b'i', b'1'] => Scalar::I8,
-        [b'i', b'2'] => Scalar::I16,
-        [b'i', b'4'] => Scalar::I32,
-        [b'i', b'8'] => Scalar::I64,
-        [b'u', b'1'] => Scalar::U8,
-        [b'u', b'2'] => Scalar::U16,
-        [b'u', b'4'] => Scalar::U32,
-        [b'u', b'8'] => Scalar::U64,
-        [b'f', b'4'] => Scalar::F32,
-        [b'f', b'8'] => Scalar::F64,
-        _ => return None,
-    };
-    Some((scalar, *order == b'>'))
+    Some((Scalar::of(*kind, *width)?, *order == b'>'))
 }

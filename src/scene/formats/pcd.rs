@@ -165,7 +165,11 @@ fn read_header<R: std::io::BufRead>(source: &mut Source<'_, R>) -> Result<Header
     }
     let (mut fields, mut numbers, mut bytes) = (Vec::new(), 0, 0);
     for (k, name) in names.into_iter().enumerate() {
-        let scalar = scalar(&types[k], &sizes[k]).ok_or_else(|| {
+        let scalar = match (&types[k][..], &sizes[k][..]) {
+            ([kind @ (b'I' | b'U' | b'F')], &[size]) => Scalar::of(kind.to_ascii_lowercase(), size),
+            _ => None,
+        };
+        let scalar = scalar.ok_or_else(|| {
             let found = printable(&[&types[k][..], b" ", &sizes[k]].concat());
             wrong("the types I and U of 1 to 8 bytes or F of 4 or 8", found)
         })?;
@@ -193,22 +197,6 @@ fn read_header<R: std::io::BufRead>(source: &mut Source<'_, R>) -> Result<Header
         bytes,
         points: points.ok_or_else(missing)?,
         is_text,
-    })
-}
-
-fn scalar(kind: &[u8], size: &[u8]) -> Option<Scalar> {
-    Some(match (kind, size) {
-        (b"I", b"1") => Scalar::I8,
-        (b"I", b"2") => Scalar::I16,
-        (b"I", b"4") => Scalar::I32,
-        (b"I", b"8") => Scalar::I64,
-        (b"U", b"1") => Scalar::U8,
-        (b"U", b"2") => Scalar::U16,
-        (b"U", b"4") => Scalar::U32,
-        (b"U", b"8") => Scalar::U64,
-        (b"F", b"4") => Scalar::F32,
-        (b"F", b"8") => Scalar::F64,
-        _ => return None,
     })
 }
 
