@@ -28,7 +28,7 @@ pub fn build_file(
     progress: &dyn Progress,
 ) -> Result<BuiltFile, OpenError> {
     let name = source.name();
-    let failed = |error| OpenError::External {
+    let failed = |error| OpenError::Build {
         source_name: name.clone(),
         error,
     };

@@ -226,10 +226,12 @@ impl Gathered {
         progress: &dyn Progress,
     ) -> Result<Graph, OpenError> {
         self.expect(self.seen, source)?;
-        let source_name = source.to_owned();
         self.builder
             .finish(placement, progress)
-            .map_err(|error| OpenError::Build { source_name, error })
+            .map_err(|error| OpenError::Build {
+                source_name: source.to_owned(),
+                error: error.into(),
+            })
     }
 }
 

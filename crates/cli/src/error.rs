@@ -270,7 +270,7 @@ impl From<OpenError> for CliError {
             OpenError::TooMany { .. } => failure.advise(
                 "build it out of core: shiftvox convert SCENE OUT.vxg --memory 2G; then draw OUT.vxg",
             ),
-            OpenError::External { error, .. } => {
+            OpenError::Build { error, .. } => {
                 let kind = match error {
                     ExternalError::Temporary { .. } | ExternalError::Write(_) if !is_limit => Kind::Run,
                     _ => failure.kind,

@@ -91,7 +91,7 @@ pub fn read_mesh(
     let beside = SameFolder::new(beside.unwrap_or(Path::new("")));
     let mesh = read_into(builder, &bytes, kind, &name, &beside, options, progress);
     let mesh = mesh.map_err(|error| match error {
-        SceneError::Io { source, .. } => OpenError::External {
+        SceneError::Io { source, .. } => OpenError::Build {
             source_name: name.clone(),
             error: ExternalError::Temporary {
                 folder: folder.path.clone(),
