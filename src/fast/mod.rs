@@ -41,7 +41,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
-use crate::project::{Engine, EngineError, FrameSetup, Stats, Stop};
+use crate::project::{Engine, EngineError, FrameSetup, Rendered, Stop};
 use bands::{BandBuffers, Job, run_bands};
 use canvas::Pixels;
 use constants::Constants;
@@ -189,12 +189,7 @@ impl Engine for Fast {
         self.fallback.draw_colors(graph, of_node, setup, colors)
     }
 
-    fn render(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<Stats, EngineError> {
+    fn render(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> Rendered {
         frame.fit(setup.width, setup.height, setup.options.coverage.blends())?;
         let why = if frame.records.is_some() {
             "handed_for_records"

@@ -39,6 +39,9 @@ pub fn most_records(setup: &FrameSetup) -> u64 {
 /// An engine's counts of one frame: names and numbers, in a fixed order.
 pub type Stats = Vec<(&'static str, u64)>;
 
+/// The counts of a frame that was drawn.
+pub type Rendered = Result<Stats, EngineError>;
+
 /// A count by its name; 0 if there is none of that name.
 #[must_use]
 pub fn stat(stats: &[(&'static str, u64)], name: &str) -> u64 {
@@ -65,10 +68,5 @@ pub trait Engine {
 
     /// Draws into `frame`, which gets the size of `setup` and is cleared first. Fails when the frame cannot be
     /// finished; its contents then have no meaning.
-    fn render(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<Stats, EngineError>;
+    fn render(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> Rendered;
 }
