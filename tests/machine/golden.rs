@@ -1,5 +1,6 @@
 //! Random frames and their integers have one recorded hash each, in the rows of the golden pictures.
 
+use crate::frame_hash::hash;
 use crate::scenes::*;
 use glam::DVec3;
 use shiftvox::frame::Frame;
@@ -17,21 +18,6 @@ fn compare(kind: &str, found: u128) {
         line.ends_with(&format!("{found:032x}")),
         "{line}: {found:032x}"
     );
-}
-
-/// XXH3-128 of all voxels, then all nodes, then what is blended, little-endian.
-fn hash(frame: &Frame) -> u128 {
-    let mut hash = Xxh3::new();
-    for number in frame.voxel.iter().flatten() {
-        hash.update(&number.to_le_bytes());
-    }
-    for node in &frame.node {
-        hash.update(&node.to_le_bytes());
-    }
-    for blend in frame.blend.iter().flatten() {
-        hash.update(format!("{blend:?}").as_bytes());
-    }
-    hash.digest128()
 }
 
 const RECORDED_FRAMES: u32 = 400;

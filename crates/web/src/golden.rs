@@ -17,7 +17,9 @@ use shiftvox::machine::{Machine, RecordStage};
 use shiftvox::project::{CageKind, Camera, Engine, FrameSetup, SetupOptions as Options};
 use shiftvox::rays::Rays;
 use shiftvox::scene::{NoMeshes, OpenOptions, Source, open_bytes, open_source};
-use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128_with_seed};
+use xxhash_rust::xxh3::{xxh3_64, xxh3_128_with_seed};
+
+use super::frame_hash::hash;
 
 /// The stages in the order in which the identity has their counts.
 const STAGES: [RecordStage; RecordStage::ALL.len()] = {
@@ -202,21 +204,6 @@ fn graph_of(name: &str) -> Graph {
         ),
     };
     opened.expect(name).graph
-}
-
-/// XXH3-128 of all voxels, then all nodes, then what is blended, little-endian.
-fn hash(frame: &Frame) -> u128 {
-    let mut hash = Xxh3::new();
-    for number in frame.voxel.iter().flatten() {
-        hash.update(&number.to_le_bytes());
-    }
-    for node in &frame.node {
-        hash.update(&node.to_le_bytes());
-    }
-    for blend in frame.blend.iter().flatten() {
-        hash.update(format!("{blend:?}").as_bytes());
-    }
-    hash.digest128()
 }
 
 #[cfg(test)]
