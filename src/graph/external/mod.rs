@@ -28,6 +28,7 @@ use super::pushed::extent;
 use super::vxg::{self, VxgError};
 use super::{BuildError, MeshBox, Placement, Progress, Voxel};
 use crate::budget::{self, DiskShortage};
+use crate::whole;
 use buffer_sizes::BufferSizes;
 use finest::Finest;
 use gather::Gather;
@@ -139,7 +140,7 @@ impl ExternalBuilder {
             return Err(BuildError::Empty.into());
         }
         let extent = extent(self.gather.min, self.gather.max)?;
-        vxg::check_free(path, overwrite)?;
+        whole::check_free(path, overwrite).map_err(VxgError::from)?;
         let built = self.build(extent, progress)?;
         let outline = built.outline(placement)?;
         let inner = outline.level_start[built.depth as usize];
