@@ -195,10 +195,8 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         let mut fast = Fast::new(options, Box::new(Machine::default()));
         let mut frame = empty(&setup);
         let result = fast.render(&view, &setup, &mut frame);
-        let is_handed = |(name, _): &(&str, u64)| *name == "handed_to_machine";
-        let declined = result
-            .as_ref()
-            .is_ok_and(|stats| stats.iter().any(is_handed));
+        let handed = |stats: &Vec<_>| shiftvox::project::stat(stats, "handed_to_machine") > 0;
+        let declined = result.as_ref().is_ok_and(handed);
         assert_eq!(result.err(), drawn.as_ref().err().copied(), "{options:?}");
         let Ok((right, _)) = &drawn else {
             continue;
