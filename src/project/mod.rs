@@ -19,4 +19,4 @@ pub use opacity::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SHARES};
 pub use options::{CageKind, Coverage, SetupOptions};
 pub use setup::{FrameSetup, SetupError};
 pub use stop::Stop;
-pub use viewer::{Contents, Viewer};
+pub use viewer::{Canvas, Contents, Viewer};

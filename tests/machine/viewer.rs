@@ -9,7 +9,9 @@ use shiftvox::frame::{Colors, Frame};
 use shiftvox::graph::GraphView;
 use shiftvox::machine::Machine;
 use shiftvox::project::viewer::FRAMES_UNCHANGED;
-use shiftvox::project::{Camera, Contents, Coverage, Engine, FrameSetup, SetupOptions, Viewer};
+use shiftvox::project::{
+    Camera, Canvas, Contents, Coverage, Engine, FrameSetup, SetupOptions, Viewer,
+};
 use shiftvox::rays::Rays;
 
 fn settings(number: usize) -> SetupOptions {
@@ -45,7 +47,8 @@ proptest! {
         let wider = Camera { width: first.width + 1, ..first };
         let cameras = [first, inside, moved, wider];
         let contents = if with_records { Contents::Records } else { Contents::Voxels };
-        let mut viewer = Viewer::new(graph.view(), Box::new(Machine::default()), contents);
+        let canvas = Canvas::new(Box::new(Machine::default()));
+        let mut viewer = Viewer::new(graph.view(), canvas, contents);
         let mut last: Option<FrameSetup> = None;
         for (camera, options, step) in steps {
             if step == 0 {
