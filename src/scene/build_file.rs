@@ -16,8 +16,8 @@ pub struct BuiltFile {
     pub report: Option<ExternalReport>,
 }
 
-/// Builds a `.vxg` file of a scene within a limit of memory: the file that [`open_source`](super::open_source) and [`vxg::write`]
-/// make. A `.vox` file, of at most 4 GB, is held in addition. A `.vxg` file is rejected as input.
+/// Builds a `.vxg` file of a scene within a limit of memory: the file that [`open_source`](super::open_source) and
+/// [`vxg::write`] make. A `.vox` file, of at most 4 GB, is held in addition. A `.vxg` file is rejected as input.
 pub fn build_file(
     source: Source,
     options: &OpenOptions,

@@ -62,10 +62,7 @@ pub enum ExternalError {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ExternalReport {
-    /// Voxels pushed, including repeated ones.
-    pub pushed: u64,
     pub voxels: u64,
-    pub nodes: u64,
     pub bytes: u64,
     pub runs: u64,
     /// Most bytes that temporary files took at once, without the result.
@@ -135,8 +132,7 @@ impl ExternalBuilder {
             mesh: self.mesh,
         };
         placement.check_world()?;
-        let pushed = self.gather.pushed;
-        if pushed == 0 {
+        if self.gather.pushed == 0 {
             return Err(BuildError::Empty.into());
         }
         let extent = extent(self.gather.min, self.gather.max)?;
@@ -146,9 +142,7 @@ impl ExternalBuilder {
         let inner = outline.level_start[built.depth as usize];
         let nodes = u64::from(outline.level_start[built.depth as usize + 1]);
         let report = ExternalReport {
-            pushed,
             voxels: outline.voxels,
-            nodes,
             bytes: 0,
             runs: built.runs,
             temporary_bytes: built.scratch.peak(),
