@@ -1,7 +1,7 @@
 //! A byte of options, then a voxel file without its mark; of `.vox`, the chunks within `MAIN`. Voxels or an error.
 
 use shiftvox::graph::Silent;
-use shiftvox::scene::{FORMATS, ReadOptions, read_voxels_from};
+use shiftvox::scene::{FORMATS, ReadOptions, SceneFile};
 
 const MOST: u64 = 1 << 20;
 
@@ -25,9 +25,6 @@ pub(crate) fn run(ending: &str, bytes: &[u8]) {
         most_voxels: MOST,
     };
     let mut count = 0u64;
-    let result = read_voxels_from(&bytes, "fuzz", &options, &mut |_| count += 1, &Silent);
+    let _ = SceneFile::in_memory(&bytes, "fuzz").and_then(|file| file.read_voxels(&options, &mut |_| count += 1, &Silent));
     assert!(count <= MOST);
-    if let Ok(info) = result {
-        assert_eq!(info.voxels, count);
-    }
 }

@@ -59,7 +59,6 @@ pub mod count;
 pub mod cycles;
 mod datapath;
 mod format;
-mod hash;
 pub mod memory;
 mod narrow;
 pub mod probe;

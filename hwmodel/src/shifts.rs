@@ -1,9 +1,9 @@
 //! Shifts that need a shifter. A line that always shifts by one place is wires.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::hash::{BuildHasherDefault, Hasher};
 use std::panic::Location;
 
-use crate::hash::NumberMap;
 use crate::{OpClass, Probe, Stage, StageLevel};
 
 /// A probe of the places by which every line shifts.
@@ -33,9 +33,31 @@ use crate::{OpClass, Probe, Stage, StageLevel};
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct ShiftProbe {
-    seen: NumberMap<SiteKey, Seen>,
+    seen: HashMap<SiteKey, Seen, BuildHasherDefault<NumberHasher>>,
     in_turn: Option<Stage>,
     beside: bool,
+}
+
+/// Fast for keys of small, dense numbers.
+#[derive(Debug, Clone, Copy, Default)]
+struct NumberHasher(u64);
+
+impl Hasher for NumberHasher {
+    fn write(&mut self, bytes: &[u8]) {
+        for number in bytes.chunks(8) {
+            let number = number
+                .iter()
+                .rfold(0, |all, &byte| all << 8 | u64::from(byte));
+            // 2^64 over the golden ratio.
+            let product = u128::from(self.0 ^ number) * 0x9e37_79b9_7f4a_7c15;
+            // Both ends of the hash are used: for the table's index and for the tag.
+            self.0 = (product >> 64) as u64 ^ product as u64;
+        }
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
 }
 
 type Site = &'static Location<'static>;

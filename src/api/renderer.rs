@@ -17,7 +17,7 @@ use crate::graph::GraphView;
 use crate::machine::{Machine, MachineOptions, Simulated};
 use crate::picture::{Background, Buffer, ResolveError, Rows, Shading, hash_rows, lights};
 use crate::project::{
-    self, CageKind, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats, Stop,
+    self, CageKind, Coverage, Engine, EngineError, FrameSetup, Rendered, SetupOptions, Stats, Stop,
 };
 use crate::rays::Rays;
 
@@ -448,12 +448,7 @@ fn lock(operations: &Mutex<Counter>) -> MutexGuard<'_, Counter> {
 }
 
 impl Engine for Counting {
-    fn render(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<Stats, EngineError> {
+    fn render(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> Rendered {
         let (stats, counter) = self
             .machine
             .render_probed(graph, setup, frame, Counter::new())?;

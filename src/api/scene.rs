@@ -5,12 +5,10 @@ use std::path::{Path, PathBuf};
 
 use super::Error;
 use super::kept::start_threads;
-use crate::graph::{BuildOptions, Builder, Crop, Graph, Placement, Silent, Voxel, vxg};
+use crate::graph::{Builder, Crop, Graph, Placement, Silent, Voxel, vxg};
 use crate::project::Bounds;
 pub use crate::project::Up;
-use crate::scene::{
-    NoMeshes, OpenOptions, Opened, SceneFile, Source, open, open_bytes, open_source,
-};
+use crate::scene::{NoMeshes, OpenOptions, Opened, SceneFile, Source, open_bytes, open_source};
 
 /// A voxel graph in world coordinates, to be drawn.
 ///
@@ -64,8 +62,9 @@ impl Scene {
     /// [`Error::Open`] for a wrong specification, [`Error::Threads`] as in [`Scene::open`].
     pub fn generate(specification: &str) -> Result<Self, Error> {
         start_threads()?;
-        let source = format!("{}{specification}", crate::scene::generate::PREFIX);
-        let opened = open(&source, &OpenOptions::default(), &NoMeshes, &Silent);
+        let text = format!("{}{specification}", crate::scene::generate::PREFIX);
+        let source = Source::Generated(text);
+        let opened = open_source(source, &OpenOptions::default(), &NoMeshes, &Silent);
         Ok(opened.map_err(|e| Error::Open(e.into()))?.into())
     }
 
@@ -76,7 +75,7 @@ impl Scene {
     /// little memory; [`Error::Threads`] as in [`Scene::open`].
     pub fn from_voxels(voxels: impl IntoIterator<Item = Voxel>) -> Result<Self, Error> {
         start_threads()?;
-        let mut builder = Builder::new(BuildOptions::default());
+        let mut builder = Builder::default();
         for voxel in voxels {
             builder.push(voxel);
         }
@@ -222,7 +221,7 @@ impl Scene {
 impl From<Opened> for Scene {
     fn from(opened: Opened) -> Self {
         Self {
-            warnings: opened.info.map(|info| info.warnings).unwrap_or_default(),
+            warnings: opened.info.warnings,
             is_verified: opened.is_verified,
             mapped: opened.mapped,
             ..opened.graph.into()
@@ -279,8 +278,8 @@ mod tests {
             verify_up_to: bytes.len() as u64 - 1,
             ..OpenOptions::default()
         };
-        let name = path.to_str().expect("text");
-        let opened = open(name, &options, &NoMeshes, &Silent).expect("a graph");
+        let source = Source::find(&path).expect("a file");
+        let opened = open_source(source, &options, &NoMeshes, &Silent).expect("a graph");
         let mut scene = Scene::from(opened).with_up(Up::Y);
         assert!(!scene.is_verified() && scene.graph.voxels == made.graph.voxels);
         scene.verify().expect("sound");

@@ -8,11 +8,11 @@ use super::{
     Buffers, COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples,
     milliseconds_since, now, timed,
 };
-use crate::frame::{Colors, Frame};
+use crate::frame::Colors;
 use crate::graph::Graph;
 use crate::picture::{Background, Buffer, Pixels, ResolveError, Resolver, Rows, Shading, lights};
 use crate::project::{
-    Bounds, Camera, Contents, Engine, FrameSetup, SetupOptions, Stats, Up, Viewer,
+    Bounds, Camera, Canvas, Contents, Engine, FrameSetup, SetupOptions, Stats, Up, Viewer,
 };
 
 #[derive(Debug, Clone, PartialEq)]
@@ -32,24 +32,8 @@ pub struct GraphDrawing<'g> {
     style: GraphStyle,
     engine: Box<dyn Fn() -> Box<dyn Engine + Send> + 'g>,
     viewer: Viewer<'g>,
-    contents: Contents,
     pixel_bytes: u64,
     last: Option<Drawn>,
-}
-
-/// An engine and a frame, to be reused for another graph.
-pub struct Canvas {
-    engine: Box<dyn Engine + Send>,
-    frame: Frame,
-}
-
-impl Canvas {
-    pub fn new(engine: Box<dyn Engine + Send>) -> Self {
-        Self {
-            engine,
-            frame: Frame::nodes_only(0, 0),
-        }
-    }
 }
 
 pub struct DrawnFrame {
@@ -101,17 +85,15 @@ impl<'g> GraphDrawing<'g> {
             graph,
             up,
             style,
-            viewer: Viewer::reusing(graph.view(), canvas.engine, canvas.frame, contents),
+            viewer: Viewer::new(graph.view(), canvas, contents),
             engine: Box::new(engine),
-            contents,
             pixel_bytes: COLOR_BYTES,
             last: None,
         }
     }
 
     pub fn into_canvas(self) -> Canvas {
-        let (engine, frame) = self.viewer.into_parts();
-        Canvas { engine, frame }
+        self.viewer.into_canvas()
     }
 
     /// Sets the memory that the caller needs per finished pixel, bytes, for the check of memory; by default 3, for colours.
@@ -141,7 +123,7 @@ impl<'g> GraphDrawing<'g> {
 
     fn sample_bytes(&self) -> u64 {
         let (node, voxel, records, blend) = (4, 16, 4, 16);
-        let voxels = match self.contents {
+        let voxels = match self.viewer.contents() {
             Contents::Nodes => 0,
             Contents::Voxels => voxel,
             Contents::Records => voxel + records,
@@ -177,9 +159,8 @@ impl<'g> GraphDrawing<'g> {
         mut make: impl FnMut(&Resolver<'_>) -> Result<T, ResolveError>,
     ) -> Result<T, DrawError> {
         match make(&self.resolver(&drawn.setup)?) {
-            Err(ResolveError::Voxel) if self.contents == Contents::Nodes => {
-                self.contents = Contents::Voxels;
-                self.viewer.store(self.contents);
+            Err(ResolveError::Voxel) if self.viewer.contents() == Contents::Nodes => {
+                self.viewer.store(Contents::Voxels);
                 let (stats, draw_ms) = self.draw_set_up(&drawn.setup)?;
                 drawn.stats = stats;
                 drawn.draw_ms += draw_ms;

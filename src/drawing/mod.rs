@@ -15,7 +15,8 @@ use crate::picture::npy::Values;
 use crate::picture::{Buffer, Picture, Pixels, ResolveError, Resolver, Rows};
 use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
 
-pub use graph::{Canvas, DrawnFrame, GraphDrawing, GraphStyle};
+pub use crate::project::Canvas;
+pub use graph::{DrawnFrame, GraphDrawing, GraphStyle};
 
 pub trait Drawable {
     /// The box, and points that enclose the contents, for a fitted camera.

@@ -41,7 +41,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
-use crate::project::{Engine, EngineError, FrameSetup, Stats, Stop};
+use crate::project::{Engine, EngineError, FrameSetup, Rendered, Stop};
 use bands::{BandBuffers, Job, run_bands};
 use canvas::Pixels;
 use constants::Constants;
@@ -159,42 +159,9 @@ impl Fast {
             false => Ok(Ok(counters)),
         }
     }
-
-    fn draw_frame(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<Drawn, EngineError> {
-        frame.fit(setup.width, setup.height, setup.options.coverage.blends())?;
-        if frame.records.is_some() {
-            return Ok(Err("handed_for_records"));
-        }
-        let pixels = Pixels {
-            width: frame.width as usize,
-            top: 0,
-            shown: &mut frame.node,
-            color: &[],
-            voxel: &mut frame.voxel,
-            blend: frame.blend.as_deref_mut().unwrap_or_default(),
-        };
-        self.draw_fast(graph, setup, pixels)
-    }
 }
 
 impl Engine for Fast {
-    fn draw(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<(), EngineError> {
-        match self.draw_frame(graph, setup, frame)? {
-            Ok(_) => Ok(()),
-            Err(_) => self.fallback.draw(graph, setup, frame),
-        }
-    }
-
     fn draw_colors(
         &mut self,
         graph: &GraphView<'_>,
@@ -204,7 +171,7 @@ impl Engine for Fast {
     ) -> Result<(), EngineError> {
         colors.fit(setup.width, setup.height)?;
         if setup.options.coverage.blends() {
-            self.draw(graph, setup, colors.nodes())?;
+            self.render(graph, setup, colors.nodes())?;
             colors.take_nodes(of_node);
             return Ok(());
         }
@@ -222,15 +189,23 @@ impl Engine for Fast {
         self.fallback.draw_colors(graph, of_node, setup, colors)
     }
 
-    fn render(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<Stats, EngineError> {
-        let why = match self.draw_frame(graph, setup, frame)? {
-            Ok(counters) => return Ok(counters.stats()),
-            Err(why) => why,
+    fn render(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> Rendered {
+        frame.fit(setup.width, setup.height, setup.options.coverage.blends())?;
+        let why = if frame.records.is_some() {
+            "handed_for_records"
+        } else {
+            let pixels = Pixels {
+                width: frame.width as usize,
+                top: 0,
+                shown: &mut frame.node,
+                color: &[],
+                voxel: &mut frame.voxel,
+                blend: frame.blend.as_deref_mut().unwrap_or_default(),
+            };
+            match self.draw_fast(graph, setup, pixels)? {
+                Ok(counters) => return Ok(counters.stats()),
+                Err(why) => why,
+            }
         };
         let mut stats = self.fallback.render(graph, setup, frame)?;
         stats.extend([("handed_to_machine", 1), (why, 1)]);

@@ -72,13 +72,7 @@ fn draw<I: Isa>(band: &mut Band<'_, I>, record: &Record, window: &Window) -> boo
     if record.centre[2] > level.fine_depth && is_deep(constants, record, least_depth) {
         let parts = &Parts::of(isa, band.graph, record.node, false, 0);
         if parts.are_even() {
-            let brick = Brick { record, parts };
-            isa.vectorize(
-                band,
-                brick,
-                #[inline(always)]
-                |band, brick| bricks::draw::<I, true>(band, brick, window),
-            );
+            draw_brick::<I, true>(band, Brick { record, parts }, window);
             return true;
         }
     }
@@ -99,15 +93,19 @@ fn draw<I: Isa>(band: &mut Band<'_, I>, record: &Record, window: &Window) -> boo
     if record.centre[2] < level.coarse_depth {
         draw_voxels(band, record, parts, window);
     } else {
-        let brick = Brick { record, parts };
-        isa.vectorize(
-            band,
-            brick,
-            #[inline(always)]
-            |band, brick| bricks::draw::<I, false>(band, brick, window),
-        );
+        draw_brick::<I, false>(band, Brick { record, parts }, window);
     }
     true
+}
+
+#[inline(always)]
+fn draw_brick<I: Isa, const DEEP: bool>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Window) {
+    band.isa.vectorize(
+        band,
+        brick,
+        #[inline(always)]
+        |band, brick| bricks::draw::<I, DEEP>(band, brick, window),
+    );
 }
 
 #[inline(always)]

@@ -1,12 +1,9 @@
 //! A quick picture: each sample's own unlit colour, for display.
 
-use std::sync::LazyLock;
-
 use rayon::prelude::*;
 
-use super::{Blend, Frame, NO_NODE};
+use super::{Frame, NO_NODE};
 use crate::budget::Shortage;
-use crate::srgb::from_linear;
 
 const TOGETHER: usize = 16;
 const SHARE: usize = 1 << 15;
@@ -56,38 +53,13 @@ impl Colors {
 
     /// Looks up the colours of a frame of this size, on the threads of the current pool.
     fn take(&mut self, of_node: &[[u8; 3]], frame: &Frame) {
-        if let Some(blend) = &frame.blend {
-            self.take_blended(blend);
-            return;
-        }
         let nodes = frame.node.par_chunks(SHARE);
         let words = self.words.par_chunks_mut(SHARE);
         nodes
             .zip(words)
             .for_each(|(nodes, words)| look_up(of_node, nodes, words));
     }
-
-    fn take_blended(&mut self, blend: &[Blend]) {
-        let encoded = &*ENCODED;
-        for (word, sample) in self.words.iter_mut().zip(blend) {
-            let byte = |c: u32| encoded[(c >> (24 - ENCODED_BITS)) as usize & (ENCODED_SIZE - 1)];
-            *word = match sample.left {
-                256 => 0,
-                _ => color_word(sample.light.map(byte)),
-            };
-        }
-    }
 }
-
-const ENCODED_BITS: u32 = 12;
-const ENCODED_SIZE: usize = 1 << ENCODED_BITS;
-
-static ENCODED: LazyLock<[u8; ENCODED_SIZE]> = LazyLock::new(|| {
-    std::array::from_fn(|light| {
-        let light = (light as f64 + 0.5) / ENCODED_SIZE as f64;
-        libm::round(255.0 * from_linear(light)) as u8
-    })
-});
 
 fn look_up(of_node: &[[u8; 3]], nodes: &[u32], words: &mut [u32]) {
     let chunks = nodes.chunks(TOGETHER).zip(words.chunks_mut(TOGETHER));

@@ -9,24 +9,10 @@ use super::pushed::{PushedVoxel, PushedVoxels, extent};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton, place};
 use crate::budget::{self, Shortage};
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Normals {
-    /// A voxel's own normal, otherwise that of the surface around it.
-    #[default]
-    FromSurface,
-    None,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct BuildOptions {
-    pub normals: Normals,
-}
-
 /// Collects voxels in memory, 20 bytes each, and builds a graph, at most about 29 bytes per voxel of a surface
-/// (`spec/graph.md`).
+/// (`spec/graph.md`). A voxel without a normal gets that of the surface around it.
 #[derive(Debug)]
 pub struct Builder {
-    options: BuildOptions,
     records: PushedVoxels,
     min: [i32; 3],
     max: [i32; 3],
@@ -34,10 +20,9 @@ pub struct Builder {
     short: Option<Shortage>,
 }
 
-impl Builder {
-    pub fn new(options: BuildOptions) -> Self {
+impl Default for Builder {
+    fn default() -> Self {
         Self {
-            options,
             records: PushedVoxels::default(),
             min: [i32::MAX; 3],
             max: [i32::MIN; 3],
@@ -45,11 +30,9 @@ impl Builder {
             short: None,
         }
     }
+}
 
-    pub fn len(&self) -> u64 {
-        self.pushed
-    }
-
+impl Builder {
     pub fn is_empty(&self) -> bool {
         self.pushed == 0
     }
@@ -105,17 +88,15 @@ impl Builder {
         progress.end();
 
         let mut tree = Tree::build(records, depth, progress)?;
-        if self.options.normals == Normals::FromSurface {
-            let finest = tree.level_start[depth as usize] as usize;
-            Estimate {
-                mask: &tree.mask,
-                first: &tree.first,
-                level_start: &tree.level_start,
-                depth,
-                centre: extent.map(|side| side as f64 / 2.0),
-            }
-            .fill(&mut tree.normal[finest..], progress);
+        let finest = tree.level_start[depth as usize] as usize;
+        Estimate {
+            mask: &tree.mask,
+            first: &tree.first,
+            level_start: &tree.level_start,
+            depth,
+            centre: extent.map(|side| side as f64 / 2.0),
         }
+        .fill(&mut tree.normal[finest..], progress);
         progress.begin("average colours and normals", 0);
         tree.average(0, 0);
         progress.end();
@@ -150,14 +131,6 @@ impl Placement {
             [0, 1, 2].map(|k| self.world_origin[k] + index(k) * self.voxel_size)
         };
         place::can_be_seen(corner(0.0), corner(side), self.voxel_size)
-    }
-}
-
-impl Extend<Voxel> for Builder {
-    fn extend<I: IntoIterator<Item = Voxel>>(&mut self, voxels: I) {
-        for voxel in voxels {
-            self.push(voxel);
-        }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::str::FromStr;
 
-use super::{BuildError, BuildOptions, Builder, Graph, Progress};
+use super::{BuildError, Builder, Graph, Progress};
 
 /// A box of voxels: ranges of file indices along x, y and z.
 ///
@@ -48,7 +48,7 @@ impl Graph {
     /// # Errors
     /// [`BuildError`], also if no voxel is left, and as [`Graph::finest_voxels`].
     pub fn cropped(&self, crop: &Crop, progress: &dyn Progress) -> Result<Self, BuildError> {
-        let mut builder = Builder::new(BuildOptions::default());
+        let mut builder = Builder::default();
         let is_inside = |index: [i32; 3]| {
             let mut axes = crop.0.iter().zip(index);
             axes.all(|(range, at)| range.contains(&i64::from(at)))
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn a_box_keeps_its_voxels_in_place() {
-        let mut builder = Builder::new(BuildOptions::default());
+        let mut builder = Builder::default();
         let indices: Vec<[i32; 3]> = (0..300)
             .map(|i| [i * 7 % 11 - 4, i * 5 % 13, i * 3 % 17 + 90])
             .collect();

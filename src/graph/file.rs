@@ -15,6 +15,7 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::map::map;
 use super::{Invalid, Opacity, PackedNormal};
 use crate::bounded;
+use crate::whole::WholeError;
 
 pub const ALIGNMENT: u64 = 64;
 
@@ -26,8 +27,8 @@ pub enum FileError {
         doing: &'static str,
         source: io::Error,
     },
-    #[error("{}: the file exists already", .0.display())]
-    Exists(PathBuf),
+    #[error(transparent)]
+    Write(#[from] WholeError),
     #[error(
         "{}: {}{section}, byte {offset}: expected {expected}; {advice}", file.display(), prefix(file)
     )]

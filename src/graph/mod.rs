@@ -21,7 +21,7 @@ mod store;
 pub mod validate;
 pub mod vxg;
 
-pub use build::{BuildError, BuildOptions, Builder, Normals};
+pub use build::{BuildError, Builder};
 
 pub use cells::Cell;
 pub use crop::Crop;

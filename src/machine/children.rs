@@ -66,59 +66,28 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         let (centre, order) = centre_and_order(dp, job, &record.cube);
 
         dp.stage(RecordStage::VertexPool);
-        match &record.pose {
-            Pose::Clip(clip, planes) => {
-                let x = pool(dp, &clip.x);
-                let y = pool(dp, &clip.y);
-                let w = pool(dp, &clip.w);
-                self.push_children(
-                    dp,
-                    job,
-                    canvas,
-                    record,
-                    (centre, order),
-                    |to, dp, canvas, octant, child| {
-                        let cage = [&x, &y, &w].map(|pool| L::child(pool, octant as usize));
-                        to.push_clip_child(dp, job, canvas, child, cage, (planes, octant))
-                    },
-                );
-            }
-            Pose::Screen(screen) => {
-                let x = pool(dp, &screen.x);
-                let y = pool(dp, &screen.y);
-                self.push_children(
-                    dp,
-                    job,
-                    canvas,
-                    record,
-                    (centre, order),
-                    |to, dp, canvas, octant, child| {
-                        let coordinates = || [&x, &y].map(|pool| L::child(pool, octant as usize));
-                        to.push_screen(dp, job, canvas, child, coordinates)
-                    },
-                );
-            }
-        }
-    }
-
-    /// Pushes the existing children, the farthest first. `push` returns whether it pushed the child.
-    #[inline(always)]
-    fn push_children<P: Probe>(
-        &mut self,
-        dp: &mut Datapath<P>,
-        job: &Job<'_>,
-        canvas: &mut Canvas<'_>,
-        parent: &Record<L>,
-        (centre, order): ([Word; 3], [u8; 8]),
-        mut push: impl FnMut(&mut Self, &mut Datapath<P>, &mut Canvas<'_>, u8, Child) -> bool,
-    ) {
+        let (x, y, depth) = match &record.pose {
+            Pose::Clip(clip, planes) => (&clip.x, &clip.y, Some((&clip.w, planes))),
+            Pose::Screen(screen) => (&screen.x, &screen.y, None),
+        };
+        let [x, y] = [x, y].map(|coordinate| pool(dp, coordinate));
+        let depth = depth.map(|(w, planes)| (pool(dp, w), planes));
+        // The farthest first.
         for (rank, octant) in (0..8u8).zip(order).rev() {
             let counts = &mut canvas.counts;
-            let Some(cube) = child_cube(dp, job, counts, &parent.cube, octant, &centre) else {
+            let Some(cube) = child_cube(dp, job, counts, &record.cube, octant, &centre) else {
                 continue;
             };
-            let from = parent.place;
-            if push(self, dp, canvas, octant, Child { cube, from }) {
+            let from = record.place;
+            let (child, of_child) = (Child { cube, from }, |pool| L::child(pool, octant as usize));
+            let is_pushed = match &depth {
+                Some((w, planes)) => {
+                    let cage = [&x, &y, w].map(of_child);
+                    self.push_clip_child(dp, job, canvas, child, cage, (planes, octant))
+                }
+                None => self.push_screen(dp, job, canvas, child, || [&x, &y].map(of_child)),
+            };
+            if is_pushed {
                 self.watch.see(Event::<L>::Pushed(rank));
             }
         }

@@ -9,7 +9,7 @@ use super::state::{MachineOptions, State};
 use super::watch::RecordsBySample;
 use crate::frame::{FillVectors, Frame, QuadNode};
 use crate::graph::GraphView;
-use crate::project::{Engine, EngineError, FrameSetup, Stats, Stop, most_records};
+use crate::project::{Engine, EngineError, FrameSetup, Rendered, Stats, Stop, most_records};
 
 /// The scalar engine.
 #[derive(Debug, Default)]
@@ -118,12 +118,7 @@ impl Machine {
 }
 
 impl Engine for Machine {
-    fn render(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<Stats, EngineError> {
+    fn render(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> Rendered {
         self.render_probed(graph, setup, frame, NoProbe)
             .map(|(stats, _)| stats)
     }

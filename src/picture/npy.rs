@@ -17,18 +17,8 @@ pub struct Array {
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum NpyError {
-    #[error("byte {offset}: expected {expected}, found {found}")]
-    Format {
-        offset: usize,
-        expected: &'static str,
-        found: String,
-    },
-    #[error("the array's type is `{0}`; expected '|u1', '<i4' or '<f4' in C order")]
-    Type(String),
-    #[error("the header promises {expected} bytes of numbers, the file has {found}")]
-    Length { expected: usize, found: usize },
-}
+#[error("{0}")]
+pub struct NpyError(String);
 
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 const PREFIX: usize = 10;
@@ -70,10 +60,15 @@ pub fn header(shape: &[usize], like: &Values) -> Vec<u8> {
 
 /// Reads a `.npy` file's bytes. Errors: see [`NpyError`]. Allocates no more than the bytes justify.
 pub fn decode(bytes: &[u8]) -> Result<Array, NpyError> {
-    let wrong = |offset, expected, found: &[u8]| NpyError::Format {
-        offset,
-        expected,
-        found: found.escape_ascii().to_string(),
+    let wrong = |offset, expected, found: &[u8]| {
+        let found = found.escape_ascii();
+        NpyError(format!("byte {offset}: expected {expected}, found {found}"))
+    };
+    let wrong_type = |kind: &[u8], order: &str| {
+        let (kind, expected) = (kind.escape_ascii(), "'|u1', '<i4' or '<f4' in C order");
+        NpyError(format!(
+            "the array's type is `{kind}{order}`; expected {expected}"
+        ))
     };
     if !is_npy(bytes) {
         let found = &bytes[..bytes.len().min(6)];
@@ -88,50 +83,53 @@ pub fn decode(bytes: &[u8]) -> Result<Array, NpyError> {
     let data_start = header_start.saturating_add(header_length);
     let header = bytes
         .get(header_start..data_start)
-        .and_then(|text| std::str::from_utf8(text).ok())
         .ok_or_else(|| wrong(header_start, "a header in text, within the file", &[]))?;
-    let kind = quoted_after(header, "'descr'").unwrap_or_default();
-    if !header.contains("'fortran_order': False") {
-        return Err(NpyError::Type(format!("{kind}, not in C order")));
+    let kind = entry(header, "descr").and_then(|kind| kind.split(|byte| *byte == b'\'').nth(1));
+    let kind = kind.unwrap_or_default();
+    if !entry(header, "fortran_order").is_some_and(|order| order.starts_with(b"False")) {
+        return Err(wrong_type(kind, ", not in C order"));
     }
-    let shape = shape_of(header)
-        .ok_or_else(|| wrong(header_start, "a shape of numbers", header.as_bytes()))?;
+    let shape = entry(header, "shape")
+        .and_then(lengths)
+        .ok_or_else(|| wrong(header_start, "a shape of numbers", header))?;
     let data = &bytes[data_start..];
-    let size = if kind == "|u1" { 1 } else { 4 };
+    let size = if kind == b"|u1" { 1 } else { 4 };
     let expected = shape
         .iter()
         .try_fold(size, |product: usize, &n| product.checked_mul(n))
         .unwrap_or(usize::MAX);
     if expected != data.len() {
-        return Err(NpyError::Length {
-            expected,
-            found: data.len(),
-        });
+        let found = data.len();
+        return Err(NpyError(format!(
+            "the header promises {expected} bytes of numbers, the file has {found}"
+        )));
     }
     let (words, _) = data.as_chunks::<4>();
     let values = match kind {
-        "|u1" => Values::U8(data.to_vec()),
-        "<i4" => Values::I32(words.iter().map(|&w| i32::from_le_bytes(w)).collect()),
-        "<f4" => Values::F32(words.iter().map(|&w| f32::from_le_bytes(w)).collect()),
-        other => return Err(NpyError::Type(other.to_owned())),
+        b"|u1" => Values::U8(data.to_vec()),
+        b"<i4" => Values::I32(words.iter().map(|&w| i32::from_le_bytes(w)).collect()),
+        b"<f4" => Values::F32(words.iter().map(|&w| f32::from_le_bytes(w)).collect()),
+        other => return Err(wrong_type(other, "")),
     };
     Ok(Array { shape, values })
 }
 
-fn quoted_after<'t>(header: &'t str, key: &str) -> Option<&'t str> {
-    header.split_once(key)?.1.split('\'').nth(1)
+/// The text after a key and its colon in a header, which is a Python dictionary.
+pub(crate) fn entry<'t>(header: &'t [u8], key: &str) -> Option<&'t [u8]> {
+    let key = format!("'{key}'");
+    let mut windows = header.windows(key.len());
+    let at = windows.position(|window| window == key.as_bytes())?;
+    let rest = header[at + key.len()..].trim_ascii_start();
+    Some(rest.strip_prefix(b":")?.trim_ascii_start())
 }
 
-fn shape_of(header: &str) -> Option<Vec<usize>> {
-    let tuple = header.split_once("'shape'")?.1.split_once('(')?.1;
-    tuple
-        .split_once(')')?
-        .0
-        .split(',')
-        .map(str::trim)
-        .filter(|length| !length.is_empty())
-        .map(|length| length.parse().ok())
-        .collect()
+/// The lengths of an array along its dimensions, from the entry `shape`.
+pub(crate) fn lengths(shape: &[u8]) -> Option<Vec<usize>> {
+    let inside = shape.strip_prefix(b"(")?;
+    let end = inside.iter().position(|byte| *byte == b')')?;
+    let lengths = std::str::from_utf8(&inside[..end]).ok()?.split(',');
+    let lengths = lengths.map(str::trim).filter(|length| !length.is_empty());
+    lengths.map(|length| length.parse().ok()).collect()
 }
 
 #[cfg(test)]

@@ -39,6 +39,9 @@ pub fn most_records(setup: &FrameSetup) -> u64 {
 /// An engine's counts of one frame: names and numbers, in a fixed order.
 pub type Stats = Vec<(&'static str, u64)>;
 
+/// The counts of a frame that was drawn.
+pub type Rendered = Result<Stats, EngineError>;
+
 /// A count by its name; 0 if there is none of that name.
 #[must_use]
 pub fn stat(stats: &[(&'static str, u64)], name: &str) -> u64 {
@@ -48,18 +51,8 @@ pub fn stat(stats: &[(&'static str, u64)], name: &str) -> u64 {
 
 /// Draws a frame. The picture depends only on the frame set-up and the graph.
 pub trait Engine {
-    /// Draws like [`Engine::render`], without work that only counters need. Errors: as [`Engine::render`].
-    fn draw(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<(), EngineError> {
-        self.render(graph, setup, frame).map(drop)
-    }
-
-    /// Draws the samples' unlit colours. `of_node` has the colours by graph node. `colors` gets the size of `setup` and
-    /// is cleared first. Previews show this and experiments time it. Errors: as [`Engine::render`].
+    /// Draws the unlit colours of the samples' nodes. `of_node` has the colours by graph node. `colors` gets the size of `setup` and
+    /// is cleared first. Experiments time this. Errors: as [`Engine::render`].
     fn draw_colors(
         &mut self,
         graph: &GraphView<'_>,
@@ -68,17 +61,12 @@ pub trait Engine {
         colors: &mut Colors,
     ) -> Result<(), EngineError> {
         colors.fit(setup.width, setup.height)?;
-        self.draw(graph, setup, colors.nodes())?;
+        self.render(graph, setup, colors.nodes())?;
         colors.take_nodes(of_node);
         Ok(())
     }
 
     /// Draws into `frame`, which gets the size of `setup` and is cleared first. Fails when the frame cannot be
     /// finished; its contents then have no meaning.
-    fn render(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<Stats, EngineError>;
+    fn render(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> Rendered;
 }

@@ -13,10 +13,10 @@ pub mod vector;
 pub mod viewer;
 
 pub use camera::{Camera, CameraError};
-pub use engine::{Engine, EngineError, OCCLUSION_ORDER, Stats, most_records, stat};
+pub use engine::{Engine, EngineError, OCCLUSION_ORDER, Rendered, Stats, most_records, stat};
 pub use fit_camera::{Bounds, DEFAULT_FOV, Direction, Lens, Up, fit_camera};
 pub use opacity::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SHARES};
 pub use options::{CageKind, Coverage, SetupOptions};
 pub use setup::{FrameSetup, SetupError};
 pub use stop::Stop;
-pub use viewer::{Contents, Viewer};
+pub use viewer::{Canvas, Contents, Viewer};

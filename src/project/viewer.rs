@@ -16,41 +16,46 @@ pub enum Contents {
 /// Name of the counter that is 1 where a frame was kept.
 pub const FRAMES_UNCHANGED: &str = "frames_unchanged";
 
+/// An engine and a frame, to be reused for another graph.
+pub struct Canvas {
+    engine: Box<dyn Engine + Send>,
+    frame: Frame,
+}
+
+impl Canvas {
+    pub fn new(engine: Box<dyn Engine + Send>) -> Self {
+        Self {
+            engine,
+            frame: Frame::nodes_only(0, 0),
+        }
+    }
+}
+
 /// An engine, its input, and its last frame, equal to that of a new engine with the same set-up.
 pub struct Viewer<'g> {
     graph: GraphView<'g>,
-    engine: Box<dyn Engine + Send>,
+    canvas: Canvas,
     contents: Contents,
-    frame: Frame,
-    shown: Option<FrameSetup>,
-    stats: Option<Stats>,
+    shown: Option<(FrameSetup, Stats)>,
 }
 
 impl<'g> Viewer<'g> {
     /// A viewer of a graph that shows nothing. The engine's result must depend only on graph and set-up.
-    pub fn new(graph: GraphView<'g>, engine: Box<dyn Engine + Send>, contents: Contents) -> Self {
-        Self::reusing(graph, engine, Frame::nodes_only(0, 0), contents)
-    }
-
-    /// [`Viewer::new`] with the memory of another viewer's frame, from [`Viewer::into_parts`].
-    pub fn reusing(
-        graph: GraphView<'g>,
-        engine: Box<dyn Engine + Send>,
-        frame: Frame,
-        contents: Contents,
-    ) -> Self {
+    pub fn new(graph: GraphView<'g>, canvas: Canvas, contents: Contents) -> Self {
         Self {
             graph,
-            engine,
+            canvas,
             contents,
-            frame,
             shown: None,
-            stats: None,
         }
     }
 
-    pub fn into_parts(self) -> (Box<dyn Engine + Send>, Frame) {
-        (self.engine, self.frame)
+    pub fn into_canvas(self) -> Canvas {
+        self.canvas
+    }
+
+    pub fn contents(&self) -> Contents {
+        self.contents
     }
 
     /// Changes the contents of samples from the next frame on, and shows nothing until then.
@@ -63,9 +68,8 @@ impl<'g> Viewer<'g> {
     /// it is 1 and all others are 0. `light` of the nodes is for rules that blend: the same for the same set-up. After
     /// an error nothing is shown.
     pub fn render(&mut self, setup: &FrameSetup, light: &[[u16; 3]]) -> Result<Stats, EngineError> {
-        if self.shows(setup) {
-            let last = self.stats.iter().flatten();
-            let mut stats: Stats = last.map(|&(name, _)| (name, 0)).collect();
+        if let Some((_, last)) = self.shown.as_ref().filter(|(shown, _)| shown == setup) {
+            let mut stats: Stats = last.iter().map(|&(name, _)| (name, 0)).collect();
             stats.push((FRAMES_UNCHANGED, 1));
             return Ok(stats);
         }
@@ -74,15 +78,15 @@ impl<'g> Viewer<'g> {
             light,
             ..self.graph
         };
-        let mut stats = self.engine.render(&graph, setup, &mut self.frame)?;
-        self.shown = Some(setup.clone());
-        self.stats = Some(stats.clone());
+        let Canvas { engine, frame } = &mut self.canvas;
+        let mut stats = engine.render(&graph, setup, frame)?;
+        self.shown = Some((setup.clone(), stats.clone()));
         stats.push((FRAMES_UNCHANGED, 0));
         Ok(stats)
     }
 
     pub fn frame(&self) -> Option<&Frame> {
-        self.shown.as_ref().map(|_| &self.frame)
+        self.shown.as_ref().map(|_| &self.canvas.frame)
     }
 
     pub fn frame_bytes(&self) -> u64 {
@@ -92,31 +96,31 @@ impl<'g> Viewer<'g> {
             records,
             blend,
             ..
-        } = &self.frame;
+        } = &self.canvas.frame;
         let records = records.as_deref().map_or(0, size_of_val);
         let blend = blend.as_deref().map_or(0, size_of_val);
         (size_of_val(&node[..]) + size_of_val(&voxel[..]) + records + blend) as u64
     }
 
     pub fn shows(&self, setup: &FrameSetup) -> bool {
-        self.shown.as_ref() == Some(setup)
+        self.shown.as_ref().is_some_and(|(shown, _)| shown == setup)
     }
 
     pub fn forget(&mut self) {
         self.shown = None;
-        self.stats = None;
     }
 
     /// Shows nothing. The engine then draws into the last frame's memory, if that has the same contents.
     fn make_room(&mut self) {
         self.forget();
-        let has = match (&self.frame.records, self.frame.voxel.is_empty()) {
+        let frame = &mut self.canvas.frame;
+        let has = match (&frame.records, frame.voxel.is_empty()) {
             (Some(_), _) => Contents::Records,
             (None, false) => Contents::Voxels,
             (None, true) => Contents::Nodes,
         };
         if has != self.contents {
-            self.frame = match self.contents {
+            *frame = match self.contents {
                 Contents::Nodes => Frame::nodes_only(0, 0),
                 contents => Frame::new(1, 1, contents == Contents::Records),
             };

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::GraphView;
-use crate::project::{Engine, EngineError, FrameSetup, Stats, Stop};
+use crate::project::{Engine, EngineError, FrameSetup, Rendered, Stop};
 
 use number::{Number, Wide};
 use ray_frame::RayFrame;
@@ -33,12 +33,7 @@ impl Rays {
 impl Engine for Rays {
     /// Fails only if the system refuses the memory of a frame, or if it is stopped. `frame.records` is the number of cubes
     /// tested against the sample's ray.
-    fn render(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<Stats, EngineError> {
+    fn render(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> Rendered {
         frame.fit(setup.width, setup.height, false)?;
         let view = RayFrame::new(setup);
         let tested = if view.fits_i128() {

@@ -1,24 +1,23 @@
 use std::path::Path;
 
 use super::generate::Spec;
-use super::mesh::{MeshReader, MeshSummary};
+use super::mesh::MeshReader;
 use super::open::{self, OpenOptions};
 use super::open_error::OpenError;
-use super::{FileKind, ReadOptions, SceneError, SceneInfo, Source};
+use super::{FileKind, ReadOptions, SceneError, Source};
 use crate::graph::{BuildError, ExternalBuilder, ExternalOptions, ExternalReport, Progress, vxg};
 
 #[derive(Debug)]
 pub struct BuiltFile {
     pub voxels: u64,
     pub bytes: u64,
-    pub info: Option<SceneInfo>,
-    pub mesh: Option<MeshSummary>,
+    pub warnings: Vec<String>,
     /// Cost of building; `None` for a cyclic scene, which has a few nodes.
     pub report: Option<ExternalReport>,
 }
 
-/// Builds a `.vxg` file of a scene within a limit of memory: the file that [`open`](super::open()) and [`vxg::write`]
-/// make. A `.vox` file, of at most 4 GB, is held in addition. A `.vxg` file is rejected as input.
+/// Builds a `.vxg` file of a scene within a limit of memory: the file that [`open_source`](super::open_source) and
+/// [`vxg::write`] make. A `.vox` file, of at most 4 GB, is held in addition. A `.vxg` file is rejected as input.
 pub fn build_file(
     source: Source,
     options: &OpenOptions,
@@ -29,13 +28,12 @@ pub fn build_file(
     progress: &dyn Progress,
 ) -> Result<BuiltFile, OpenError> {
     let name = source.name();
-    let failed = |error| OpenError::External {
+    let failed = |error| OpenError::Build {
         source_name: name.clone(),
         error,
     };
     let mut builder = ExternalBuilder::new(external.clone());
-    let mut info = None;
-    let mut mesh = None;
+    let mut warnings = Vec::new();
     let mut placement = open::UNIT;
     match source {
         Source::Generated(spec) => {
@@ -45,8 +43,7 @@ pub fn build_file(
                 return Ok(BuiltFile {
                     voxels: graph.voxels,
                     bytes: std::fs::metadata(output).map_or(0, |file| file.len()),
-                    info,
-                    mesh: None,
+                    warnings,
                     report: None,
                 });
             }
@@ -70,8 +67,8 @@ pub fn build_file(
             external.memory = external.memory.saturating_sub(ready.bytes());
             builder = ExternalBuilder::new(external).of_mesh(ready.mesh_box());
             placement = ready.placement();
-            let (found, summary) = ready.voxels(&mut |v| builder.push(v), progress);
-            (info, mesh) = (Some(found), Some(summary));
+            let (found, _) = ready.voxels(&mut |v| builder.push(v), progress);
+            warnings = found.warnings;
         }
         Source::File(file) => {
             let wanted = options.read.most_voxels;
@@ -89,7 +86,7 @@ pub fn build_file(
                 found => found?,
             };
             placement = open::placement(&found);
-            info = Some(found);
+            warnings = found.warnings;
         }
     }
     let report = builder
@@ -98,8 +95,7 @@ pub fn build_file(
     Ok(BuiltFile {
         voxels: report.voxels,
         bytes: report.bytes,
-        info,
-        mesh,
+        warnings,
         report: Some(report),
     })
 }

@@ -1,7 +1,7 @@
 //! The last step of every reader of voxels: limits, bounds and progress, then the caller's sink.
 
-use super::SceneInfo;
 use super::fault::{Fault, Problem};
+use super::{ReadOptions, SceneInfo};
 use crate::graph::{PackedNormal, Progress, Voxel};
 
 /// Extent, in voxels, that a scene must stay below along every axis.
@@ -13,7 +13,8 @@ pub(super) struct Emitter<'a> {
     sink: &'a mut dyn FnMut(Voxel),
     progress: &'a dyn Progress,
     count: u64,
-    most: u64,
+    pub(super) options: &'a ReadOptions,
+    pub(super) info: SceneInfo,
     low: [i32; 3],
     high: [i32; 3],
 }
@@ -21,14 +22,15 @@ pub(super) struct Emitter<'a> {
 impl<'a> Emitter<'a> {
     pub(super) fn new(
         sink: &'a mut dyn FnMut(Voxel),
-        most: u64,
+        options: &'a ReadOptions,
         progress: &'a dyn Progress,
     ) -> Self {
         Self {
             sink,
             progress,
             count: 0,
-            most,
+            options,
+            info: SceneInfo::default(),
             low: [i32::MAX; 3],
             high: [i32::MIN; 3],
         }
@@ -71,7 +73,7 @@ impl<'a> Emitter<'a> {
             self.low[axis] = low;
             self.high[axis] = high;
         }
-        if self.count >= self.most {
+        if self.count >= self.options.most_voxels {
             return Err(self.too_many(self.count + 1));
         }
         (self.sink)(Voxel {
@@ -89,7 +91,7 @@ impl<'a> Emitter<'a> {
     /// Fails if so many further voxels exceed the limit: for readers that know their number in advance.
     pub(super) fn expect(&self, voxels: u64) -> Result<(), Problem> {
         match self.count.saturating_add(voxels) {
-            all if all > self.most => Err(self.too_many(all)),
+            all if all > self.options.most_voxels => Err(self.too_many(all)),
             _ => Ok(()),
         }
     }
@@ -98,14 +100,13 @@ impl<'a> Emitter<'a> {
     fn too_many(&self, voxels: u64) -> Problem {
         Problem::TooMany {
             voxels,
-            most: self.most,
+            most: self.options.most_voxels,
         }
     }
 
-    pub(super) fn finish(self, info: &mut SceneInfo) {
+    pub(super) fn finish(self) -> SceneInfo {
         self.progress.advance(self.count % PROGRESS_STEP);
-        info.voxels = self.count;
-        info.bounds = (self.count > 0).then_some((self.low, self.high));
+        self.info
     }
 }
 

@@ -74,7 +74,7 @@ impl SceneFile<File> {
 
 impl<'b> SceneFile<Cursor<&'b [u8]>> {
     /// A file that is held in memory; errors call it `name`.
-    pub(super) fn in_memory(bytes: &'b [u8], name: &str) -> Result<Self, SceneError> {
+    pub fn in_memory(bytes: &'b [u8], name: &str) -> Result<Self, SceneError> {
         Self::begin(Cursor::new(bytes), bytes.len() as u64, Path::new(name))
     }
 }
@@ -165,6 +165,7 @@ impl<R: Read + Seek> SceneFile<R> {
         }
     }
 
+    /// Passes each voxel to `sink`. After an error the caller must discard what it received.
     pub fn read_voxels(
         mut self,
         options: &ReadOptions,
@@ -179,12 +180,9 @@ impl<R: Read + Seek> SceneFile<R> {
         };
         let name = self.name();
         progress.begin(&format!("reading {name}"), 0);
-        let mut emitter = Emitter::new(sink, options.most_voxels, progress);
+        let mut emitter = Emitter::new(sink, options, progress);
         let mut input = Input::new(&mut self.stream, self.length);
-        let result = read(&mut input, options, &mut emitter).map(|mut info| {
-            emitter.finish(&mut info);
-            info
-        });
+        let result = read(&mut input, &mut emitter).map(|()| emitter.finish());
         progress.end();
         result.map_err(|problem| problem.in_file(&name))
     }

@@ -3,10 +3,6 @@
 //! Importers pass voxels to a sink one by one. File coordinates are kept: voxel `(i, j, k)` fills
 //! `[i, i+1) x [j, j+1) x [k, k+1)`, Z up, and colours are sRGB as stored. [`FORMATS`] is the table of formats.
 
-use std::path::Path;
-
-use crate::graph::{Progress, Voxel};
-
 mod build_file;
 mod emit;
 mod error;
@@ -31,7 +27,7 @@ pub use formats::{
     FORMATS, FileKind, Format, VoxWriter, VoxWritten, detect, is_binary_stl, is_text_stl, write_ply,
 };
 pub use mesh::{MeshFile, MeshReader, MeshSummary, MeshVoxels, NoMeshes};
-pub use open::{OpenOptions, Opened, open, open_bytes, open_source};
+pub use open::{OpenOptions, Opened, open_bytes, open_source};
 pub use open_error::{MeshFailure, OpenError};
 pub use options::{ReadOptions, SceneInfo};
 
@@ -39,24 +35,3 @@ pub const BUNDLED_TREE: &[u8] = include_bytes!("../../assets/tree.vox");
 
 /// sRGB colour of voxels and triangles in files without colours.
 pub const DEFAULT_COLOR: [u8; 3] = [200; 3];
-
-/// Reads a voxel file and passes each voxel to `sink`. After an error the caller must discard what it received.
-pub fn read_voxels(
-    path: &Path,
-    options: &ReadOptions,
-    sink: &mut dyn FnMut(Voxel),
-    progress: &dyn Progress,
-) -> Result<SceneInfo, SceneError> {
-    SceneFile::open(path)?.read_voxels(options, sink, progress)
-}
-
-/// [`read_voxels`] of bytes in memory; errors call them `name`.
-pub fn read_voxels_from(
-    bytes: &[u8],
-    name: &str,
-    options: &ReadOptions,
-    sink: &mut dyn FnMut(Voxel),
-    progress: &dyn Progress,
-) -> Result<SceneInfo, SceneError> {
-    SceneFile::in_memory(bytes, name)?.read_voxels(options, sink, progress)
-}

@@ -17,6 +17,23 @@ pub enum Scalar {
 }
 
 impl Scalar {
+    /// The type of a kind, `i`, `u` or `f`, and of as many bytes as a digit says.
+    pub(super) fn of(kind: u8, size: u8) -> Option<Self> {
+        Some(match [kind, size] {
+            [b'i', b'1'] => Self::I8,
+            [b'i', b'2'] => Self::I16,
+            [b'i', b'4'] => Self::I32,
+            [b'i', b'8'] => Self::I64,
+            [b'u', b'1'] => Self::U8,
+            [b'u', b'2'] => Self::U16,
+            [b'u', b'4'] => Self::U32,
+            [b'u', b'8'] => Self::U64,
+            [b'f', b'4'] => Self::F32,
+            [b'f', b'8'] => Self::F64,
+            _ => return None,
+        })
+    }
+
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,

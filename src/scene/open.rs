@@ -8,7 +8,7 @@ use super::mesh::{MeshReader, MeshSummary, MeshVoxels};
 use super::open_error::OpenError;
 use super::{FileKind, ReadOptions, SceneError, SceneFile, SceneInfo, Source};
 use crate::budget;
-use crate::graph::{BuildOptions, Builder, Graph, Progress, vxg};
+use crate::graph::{Builder, Graph, Progress, vxg};
 
 /// The default limit. Of a larger file, only the pages that a picture needs are read.
 const VERIFY_BYTES: u64 = 1 << 20;
@@ -37,7 +37,7 @@ pub struct Opened {
     /// The voxels, at least one.
     pub graph: Graph,
     pub format: String,
-    pub info: Option<SceneInfo>,
+    pub info: SceneInfo,
     pub mesh: Option<MeshSummary>,
     /// `false` for a graph file larger than [`OpenOptions::verify_up_to`].
     pub is_verified: bool,
@@ -50,7 +50,7 @@ impl Opened {
         Self {
             graph,
             format: format.to_string(),
-            info: None,
+            info: SceneInfo::default(),
             mesh: None,
             is_verified: true,
             mapped: None,
@@ -60,16 +60,6 @@ impl Opened {
 
 /// Opens a file, or makes the scene of a `gen:` specification. Too many voxels for the memory are an error, before they
 /// are read if the file states their number.
-pub fn open(
-    source: &str,
-    options: &OpenOptions,
-    meshes: &dyn MeshReader,
-    progress: &dyn Progress,
-) -> Result<Opened, OpenError> {
-    open_source(Source::find(source)?, options, meshes, progress)
-}
-
-/// [`open`] for a source that was found.
 pub fn open_source(
     source: Source,
     options: &OpenOptions,
@@ -124,7 +114,7 @@ fn open_file<R: Read + Seek>(
     let info = read?;
     let graph = gathered.finish(&name, placement(&info), progress)?;
     Ok(Opened {
-        info: Some(info),
+        info,
         ..Opened::of(graph, ending)
     })
 }
@@ -153,13 +143,13 @@ fn open_mesh(
     graph.placement.mesh = Some(mesh.mesh_box());
     mesh.finish(&mut graph, progress);
     Ok(Opened {
-        info: Some(info),
+        info,
         mesh: Some(summary),
         ..Opened::of(graph, format)
     })
 }
 
-/// [`open`] for a file in memory. A mesh there has no other files.
+/// [`open_source`] for a file in memory. A mesh there has no other files.
 pub fn open_bytes(
     bytes: &[u8],
     name: &str,
@@ -199,7 +189,7 @@ impl Default for Gathered {
     fn default() -> Self {
         let available = budget::available();
         Self {
-            builder: Builder::new(BuildOptions::default()),
+            builder: Builder::default(),
             available,
             most: available.map_or(u64::MAX, |bytes| bytes / LEAST_BYTES),
             seen: 0,
@@ -213,7 +203,7 @@ impl Gathered {
         if self.seen <= self.most {
             self.builder.push(voxel);
         } else if !self.builder.is_empty() {
-            self.builder = Builder::new(BuildOptions::default());
+            self.builder = Builder::default();
         }
     }
 
@@ -236,10 +226,12 @@ impl Gathered {
         progress: &dyn Progress,
     ) -> Result<Graph, OpenError> {
         self.expect(self.seen, source)?;
-        let source_name = source.to_owned();
         self.builder
             .finish(placement, progress)
-            .map_err(|error| OpenError::Build { source_name, error })
+            .map_err(|error| OpenError::Build {
+                source_name: source.to_owned(),
+                error: error.into(),
+            })
     }
 }
 

@@ -19,11 +19,6 @@ pub enum OpenError {
     #[error("{source_name}: {error}")]
     Build {
         source_name: String,
-        error: BuildError,
-    },
-    #[error("{source_name}: {error}")]
-    External {
-        source_name: String,
         error: ExternalError,
     },
     #[error(
@@ -50,12 +45,10 @@ impl OpenError {
     pub fn is_limit(&self) -> bool {
         match self {
             Self::TooMany { .. } => true,
-            Self::Build { error, .. }
-            | Self::External {
-                error: ExternalError::Build(error),
-                ..
-            } => !matches!(error, BuildError::Empty),
-            Self::External { error, .. } => matches!(error, ExternalError::Disk(_)),
+            Self::Build { error, .. } => match error {
+                ExternalError::Build(error) => !matches!(error, BuildError::Empty),
+                error => matches!(error, ExternalError::Disk(_)),
+            },
             Self::Scene(error) => error.is_limit(),
             Self::NoMeshes(_) => false,
             Self::Mesh(failure) => failure.is_limit,

@@ -19,20 +19,8 @@ impl Default for ReadOptions {
 
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SceneInfo {
-    /// Voxels passed on; several at one index count each, a model with several equal placements once.
-    pub voxels: u64,
-    pub stored_voxels: u64,
-    pub bounds: Option<([i32; 3], [i32; 3])>,
-    pub models: u32,
-    pub nodes: u32,
-    /// Placements of models, including those that repeat another one.
-    pub instances: u32,
-    pub hidden_instances: u32,
-    pub outside_size: u64,
     /// RGBA of colour indices 1, 2, ...; empty if the file has none.
     pub palette: Vec<[u8; 4]>,
-    pub has_colors: bool,
-    pub has_normals: bool,
     /// Of a cloud of points, if one was asked for.
     pub voxel_size: Option<f64>,
     /// Warnings about a file that could be read, one sentence each.

@@ -5,35 +5,29 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use shiftvox::graph::{
-    BuildError, BuildOptions, ExternalBuilder, ExternalError, ExternalOptions, ExternalReport,
-    Normals, Silent, Voxel,
+    BuildError, ExternalBuilder, ExternalError, ExternalOptions, ExternalReport, Silent, Voxel,
 };
 use shiftvox::picture::npy::{Array, Values, encode};
 use shiftvox::scene::{self, BuiltFile, NoMeshes, OpenError, OpenOptions, Source};
 
-use crate::{PLACE, at, build_with, bytes_of, generated, voxels};
+use crate::{PLACE, at, build, bytes_of, generated, voxels};
 
-fn options(memory: u64, normals: Normals, temporary: &Path) -> ExternalOptions {
+fn options(memory: u64, temporary: &Path) -> ExternalOptions {
     ExternalOptions {
-        build: BuildOptions { normals },
         memory,
         temporary: temporary.to_owned(),
     }
 }
 
 /// The file built within `memory`, and the report; nothing else may be left.
-fn external(voxels: &[Voxel], memory: u64, normals: Normals) -> (Vec<u8>, ExternalReport) {
+fn external(voxels: &[Voxel], memory: u64) -> (Vec<u8>, ExternalReport) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("out.vxg");
-    let mut builder = ExternalBuilder::new(options(memory, normals, folder.path()));
+    let mut builder = ExternalBuilder::new(options(memory, folder.path()));
     voxels.iter().for_each(|&voxel| builder.push(voxel));
     let report = builder.finish(PLACE, &path, false, &Silent).unwrap();
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     (fs::read(path).unwrap(), report)
-}
-
-fn in_memory(voxels: &[Voxel], normals: Normals) -> Vec<u8> {
-    bytes_of(&build_with(normals, voxels.iter().copied()))
 }
 
 /// The first place where two files differ.
@@ -50,13 +44,10 @@ proptest! {
 
     #[test]
     fn every_byte_is_that_of_the_file_built_in_memory(voxels in voxels(400), which in 0..MEMORY.len()) {
-        for normals in [Normals::FromSurface, Normals::None] {
-            let (file, report) = external(&voxels, MEMORY[which], normals);
-            let expected = in_memory(&voxels, normals);
-            prop_assert_eq!(difference(&file, &expected), None);
-            prop_assert_eq!(report.pushed, voxels.len() as u64);
-            prop_assert_eq!(report.bytes, file.len() as u64);
-        }
+        let (file, report) = external(&voxels, MEMORY[which]);
+        let expected = bytes_of(&build(&voxels));
+        prop_assert_eq!(difference(&file, &expected), None);
+        prop_assert_eq!(report.bytes, file.len() as u64);
     }
 }
 
@@ -76,10 +67,10 @@ fn generated_scenes_are_the_same_in_any_memory() {
         let voxels = generated(scene);
         // From the far end, so that the lowest corner comes last.
         let reversed: Vec<Voxel> = voxels.iter().rev().copied().collect();
-        let expected = in_memory(&voxels, Normals::FromSurface);
+        let expected = bytes_of(&build(&voxels));
         for &memory in memory {
             for order in [&voxels, &reversed] {
-                let (file, report) = external(order, memory, Normals::FromSurface);
+                let (file, report) = external(order, memory);
                 assert_eq!(difference(&file, &expected), None, "{scene}, {memory}");
                 // A run's records take 16 bytes, and are written before the levels.
                 assert!(report.temporary_written >= report.temporary_bytes);
@@ -98,9 +89,8 @@ fn what_cannot_be_built_leaves_nothing_behind() {
     fs::write(&path, b"precious").unwrap();
     let nowhere = folder.path().join("no/folder");
     let refused = |step: i32, count: i32, size: f64, overwrite, temporary: &Path| {
-        let mut builder = ExternalBuilder::new(options(0, Normals::FromSurface, temporary));
+        let mut builder = ExternalBuilder::new(options(0, temporary));
         (0..count).for_each(|x| builder.push(at([x * step, 0, 0])));
-        assert_eq!(builder.len(), count as u64);
         let refused = builder.finish(([0.0; 3], size), &path, overwrite, &Silent);
         assert_eq!(fs::read(&path).unwrap(), b"precious");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
@@ -125,7 +115,7 @@ fn what_cannot_be_built_leaves_nothing_behind() {
 fn build_file(source: &str, memory: u64, output: &Path) -> Result<BuiltFile, OpenError> {
     let found = Source::find(source)?;
     let reading = OpenOptions::default();
-    let external = options(memory, Normals::FromSurface, output.parent().unwrap());
+    let external = options(memory, output.parent().unwrap());
     scene::build_file(found, &reading, &NoMeshes, external, output, true, &Silent)
 }
 
@@ -149,15 +139,17 @@ fn files_of_every_format_are_built_the_same() {
     let files = files.iter().map(|path| path.to_str().unwrap());
     for source in files.chain(["gen:wires,depth=4", "gen:sierpinski,depth=20"]) {
         let reading = OpenOptions::default();
-        let opened = scene::open(source, &reading, &NoMeshes, &Silent).unwrap();
+        let opened =
+            scene::open_source(Source::find(source).unwrap(), &reading, &NoMeshes, &Silent)
+                .unwrap();
         let built = build_file(source, 10_000, &path).unwrap();
         let file = fs::read(&path).unwrap();
         let expected = bytes_of(&opened.graph);
         assert_eq!(difference(&file, &expected), None, "{source}");
-        let counts = (built.voxels, built.bytes, built.info);
+        let counts = (built.voxels, built.bytes, built.warnings);
         assert_eq!(
             counts,
-            (opened.graph.voxels, file.len() as u64, opened.info)
+            (opened.graph.voxels, file.len() as u64, opened.info.warnings)
         );
     }
     // A graph is no list of voxels.

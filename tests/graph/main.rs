@@ -11,24 +11,18 @@ mod seal;
 mod vxg;
 
 use proptest::prelude::*;
-use shiftvox::graph::{
-    BuildOptions, Builder, Graph, Normals, PackedNormal, Silent, Voxel, vxg as file,
-};
+use shiftvox::graph::{Builder, Graph, PackedNormal, Silent, Voxel, vxg as file};
 use shiftvox::scene::generate::Spec;
 
 /// World origin and size of a voxel.
 const PLACE: ([f64; 3], f64) = ([0.5, -2.0, 1e3], 0.25);
 
-fn build_with(normals: Normals, voxels: impl IntoIterator<Item = Voxel>) -> Graph {
-    let mut builder = Builder::new(BuildOptions { normals });
-    builder.extend(voxels);
+fn build(voxels: &[Voxel]) -> Graph {
+    let mut builder = Builder::default();
+    voxels.iter().for_each(|&voxel| builder.push(voxel));
     let graph = builder.finish(PLACE, &Silent).unwrap();
     graph.validate().unwrap();
     graph
-}
-
-fn build(voxels: &[Voxel]) -> Graph {
-    build_with(Normals::FromSurface, voxels.iter().copied())
 }
 
 fn at(index: [i32; 3]) -> Voxel {

@@ -3,13 +3,11 @@
 use std::collections::BTreeMap;
 
 use proptest::prelude::*;
-use shiftvox::graph::{
-    BuildError, BuildOptions, Builder, Graph, LinkedGraph, Normals, PackedNormal, Silent, Voxel,
-};
+use shiftvox::graph::{BuildError, Builder, Graph, LinkedGraph, PackedNormal, Silent, Voxel};
 use shiftvox::split_mix::SplitMix;
 
 use crate::normals::solid;
-use crate::{PLACE, at, build, build_with, parts, voxels};
+use crate::{PLACE, at, build, parts, voxels};
 
 /// Colour and normal of each index, found by walking.
 fn seen(graph: &Graph) -> BTreeMap<[i64; 3], ([u8; 3], PackedNormal)> {
@@ -60,15 +58,16 @@ proptest! {
     #[test]
     fn a_graph_holds_its_voxels(voxels in voxels(200)) {
         let all = last_by_index(&voxels);
-        let graph = build_with(Normals::None, voxels.iter().copied());
-        let shown = |v: &Voxel| (v.color, v.normal.unwrap_or_default());
-        let expected: BTreeMap<_, _> = all.iter().map(|(index, v)| (*index, shown(v))).collect();
-        prop_assert_eq!(graph.voxels, expected.len() as u64);
-        prop_assert_eq!(seen(&graph), expected);
-        check_places(&graph);
-        for (index, (_, normal)) in seen(&build(&voxels)) {
-            prop_assert!(all[&index].normal.is_none_or(|own| own == normal));
+        let graph = build(&voxels);
+        let seen = seen(&graph);
+        prop_assert_eq!(graph.voxels, all.len() as u64);
+        prop_assert!(seen.keys().eq(all.keys()));
+        for (index, (color, normal)) in seen {
+            let given = all[&index];
+            prop_assert_eq!(color, given.color);
+            prop_assert!(given.normal.is_none_or(|own| own == normal));
         }
+        check_places(&graph);
         // Octants from the root down, as the order defines.
         let octant = |corner: [i32; 3], b: u32| {
             (corner[0] >> b & 1) << 2 | (corner[1] >> b & 1) << 1 | (corner[2] >> b & 1)
@@ -117,8 +116,8 @@ fn boxes_of_one_voxel_and_of_the_longest_side() {
     let graph = build(&[at([-5, 0, 0]), at([far - 5, 0, 3])]);
     assert_eq!((graph.depth, graph.voxels), (21, 2));
     let refused = |voxels: &[Voxel], place| {
-        let mut builder = Builder::new(BuildOptions::default());
-        builder.extend(voxels.iter().copied());
+        let mut builder = Builder::default();
+        voxels.iter().for_each(|&voxel| builder.push(voxel));
         builder.finish(place, &Silent).unwrap_err()
     };
     let (axis, extent) = ('z', (1 << 21) + 1);

@@ -1,6 +1,6 @@
 //! Memory of generated scenes: bytes per voxel of the graph, and the peak of a build out of core.
 
-use shiftvox::graph::{BuildOptions, ExternalBuilder, ExternalOptions, Silent};
+use shiftvox::graph::{ExternalBuilder, ExternalOptions, Silent};
 use shiftvox::scene::generate::Spec;
 
 use crate::{PLACE, build, generated};
@@ -41,7 +41,6 @@ fn a_scene_larger_than_its_memory_stays_within_it() {
     let folder = tempfile::tempdir().unwrap();
     let memory = 100 << 20;
     let mut builder = ExternalBuilder::new(ExternalOptions {
-        build: BuildOptions::default(),
         memory,
         temporary: folder.path().to_owned(),
     });

@@ -6,6 +6,7 @@ use std::fs;
 use shiftvox::graph::vxg::{self, VxgError};
 use shiftvox::graph::{Graph, LinkedGraph, MeshBox, Opacity, Store};
 use shiftvox::scene::{FileKind, detect};
+use shiftvox::whole::WholeError;
 
 use crate::{at, build, bytes_of, parts, seal};
 
@@ -78,10 +79,13 @@ fn nothing_is_overwritten_unasked_or_left_behind() {
     fs::write(&path, b"precious").unwrap();
     let [mut graph, ..] = small_graphs();
     let refused = vxg::write(&graph, &path, false).unwrap_err();
-    assert!(matches!(refused, VxgError::Exists(_)), "{refused}");
+    assert!(
+        matches!(refused, VxgError::Write(WholeError::Exists(_))),
+        "{refused}"
+    );
     // A folder is not made where a file stands.
     let refused = vxg::write(&graph, &path.join("folder.vxg"), false).unwrap_err();
-    assert!(matches!(refused, VxgError::Io { .. }), "{refused}");
+    assert!(matches!(refused, VxgError::Write(_)), "{refused}");
     // A broken graph is refused before anything is touched.
     graph.voxels += 1;
     let refused = vxg::write(&graph, &path, true).unwrap_err();

@@ -13,7 +13,7 @@ mod wrong;
 use std::path::Path;
 
 use shiftvox::graph::{Silent, Voxel};
-use shiftvox::scene::{ReadOptions, SceneError, SceneInfo, read_voxels_from};
+use shiftvox::scene::{ReadOptions, SceneError, SceneFile, SceneInfo};
 use xxhash_rust::xxh3::Xxh3;
 
 /// Index and colour.
@@ -21,8 +21,8 @@ type Plain = ([i32; 3], [u8; 3]);
 
 fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<(Vec<Voxel>, SceneInfo), SceneError> {
     let mut voxels = Vec::new();
-    let info = read_voxels_from(bytes, "test", options, &mut |v| voxels.push(v), &Silent)?;
-    assert_eq!(info.voxels, voxels.len() as u64);
+    let file = SceneFile::in_memory(bytes, "test")?;
+    let info = file.read_voxels(options, &mut |v| voxels.push(v), &Silent)?;
     Ok((voxels, info))
 }
 

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use shiftvox::graph::Silent;
 use shiftvox::scene::{
-    NoMeshes, OpenError, OpenOptions, Opened, ReadOptions, SceneError, open_bytes, read_voxels_from,
+    NoMeshes, OpenError, OpenOptions, Opened, ReadOptions, SceneError, SceneFile, open_bytes,
 };
 use shiftvox::split_mix::SplitMix;
 
@@ -24,10 +24,9 @@ fn shared_graphs_are_what_they_unfold_to() {
     let palette: Vec<[u8; 4]> = (1..=255).map(|i| [i, 0, 0, 255]).collect();
     for seed in 0..400 {
         let scene = scene(seed, 1 + seed as u32 % 12, false);
-        let (voxels, info) = read(&scene.file().palette(&palette).bytes()).unwrap();
+        let (voxels, _) = read(&scene.file().palette(&palette).bytes()).unwrap();
         let found: BTreeMap<[i32; 3], u8> = voxels.iter().map(|v| (v.index, v.color[0])).collect();
         assert_eq!(found, scene.voxels(), "seed {seed}");
-        assert!(info.voxels <= info.instances as u64 * 4, "seed {seed}");
     }
 }
 
@@ -70,7 +69,7 @@ fn slab(levels: u32, apart: u64) -> Vec<u8> {
 fn a_model_at_one_place_costs_once_however_often_it_is_placed_there() {
     let file = slab(17, 0);
     let (voxels, info) = read(&file).unwrap();
-    assert_eq!((voxels.len(), info.instances), (65_536, 1 << 17));
+    assert_eq!(voxels.len(), 65_536);
     let said = "131071 placements put a model where it is already";
     assert!(info.warnings[0].starts_with(said), "{:?}", info.warnings);
     assert_eq!(open(&file).unwrap().graph.voxels, 65_536);
@@ -86,7 +85,8 @@ fn more_voxels_than_are_wanted_are_refused_before_the_first() {
             ..ReadOptions::default()
         };
         let mut seen = 0u64;
-        let read = read_voxels_from(&file, "slab", &options, &mut |_| seen += 1, &Silent);
+        let file = SceneFile::in_memory(&file, "slab").unwrap();
+        let read = file.read_voxels(&options, &mut |_| seen += 1, &Silent);
         (read, seen)
     };
     let (refused, seen) = count(all - 1);
@@ -94,7 +94,7 @@ fn more_voxels_than_are_wanted_are_refused_before_the_first() {
     assert!(matches!(refused, SceneError::TooMany { voxels, .. } if voxels == all));
     assert!(refused.is_limit() && seen == 0, "{refused}");
     let (read, seen) = count(all);
-    assert_eq!((read.unwrap().voxels, seen), (all, all));
+    assert!(read.is_ok() && seen == all);
     // 2^17 places a voxel apart: 2^33 voxels.
     let refused = open(&slab(17, 1)).unwrap_err();
     let told = refused.to_string();

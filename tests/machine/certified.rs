@@ -11,7 +11,7 @@ use shiftvox::rays::Rays;
 
 use crate::common::{number_of, stat};
 use crate::scene_table::SCENES;
-use crate::scenes::{Dice, PLACES, any_height, camera_at, cube, graph_of_spec, up_of};
+use crate::scenes::{Dice, PLACES, any_height, camera_at, cube, graph_of, up_of};
 
 const SAMPLES: u32 = 4_000_000;
 
@@ -107,7 +107,7 @@ const AT_A_BRICK: &str = "
 
 #[test]
 fn bricks_at_the_eye_in_views_of_nearly_180_degrees() {
-    let graph = graph_of_spec("gen:checker,depth=2");
+    let graph = graph_of("gen:checker,depth=2");
     let numbers = AT_A_BRICK.split_whitespace().map(|n| n.parse().unwrap());
     for of_camera in numbers.collect::<Vec<f64>>().chunks(10) {
         let [eye, target, up] = [1, 4, 7].map(|at| DVec3::from_slice(&of_camera[at..]));

@@ -125,7 +125,7 @@ fn counts_agree() {
 /// fill vectors.
 #[test]
 fn each_setting_saves_reads_and_writes() {
-    let graph = graph_of_spec("gen:terrain,depth=7");
+    let graph = graph_of("gen:terrain,depth=7");
     let camera = camera_at(CameraPlace::Outside, &graph, (128, 128), &mut Dice::new(3));
     let setup = setup(&graph, &camera, &SetupOptions::default());
     let mut organisation = Organisation::default();

@@ -192,10 +192,8 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         let mut fast = Fast::new(options, Box::new(Machine::default()));
         let mut frame = empty(&setup);
         let result = fast.render(&view, &setup, &mut frame);
-        let is_handed = |(name, _): &(&str, u64)| *name == "handed_to_machine";
-        let declined = result
-            .as_ref()
-            .is_ok_and(|stats| stats.iter().any(is_handed));
+        let handed = |stats: &Vec<_>| shiftvox::project::stat(stats, "handed_to_machine") > 0;
+        let declined = result.as_ref().is_ok_and(handed);
         assert_eq!(result.err(), drawn.as_ref().err().copied(), "{options:?}");
         let Ok((right, _)) = &drawn else {
             continue;
@@ -204,17 +202,15 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         // Deep graphs far away may be beyond the fast engine's lanes.
         let may_decline = !is_usual || !outlines || graph.depth > 12 || is_absurd;
         assert!(may_decline || !declined, "{options:?}");
-        if !coverage.blends() {
-            let mut colors = Colors::new(setup.width, setup.height);
-            colors.words.fill(3);
-            let drawn = fast.draw_colors(&view, &graph.color, &setup, &mut colors);
-            drawn.expect("drawn before");
-            let color = |&node: &u32| match node {
-                NO_NODE => 0,
-                node => color_word(graph.color[node as usize]),
-            };
-            assert!(frame.node.iter().map(color).eq(colors.words), "{options:?}");
-        }
+        let mut colors = Colors::new(setup.width, setup.height);
+        colors.words.fill(3);
+        let drawn = fast.draw_colors(&view, &graph.color, &setup, &mut colors);
+        drawn.expect("drawn before");
+        let color = |&node: &u32| match node {
+            NO_NODE => 0,
+            node => color_word(graph.color[node as usize]),
+        };
+        assert!(frame.node.iter().map(color).eq(colors.words), "{options:?}");
     }
     let (right, stats) = drawn.ok()?;
     if coverage == Coverage::Exact {

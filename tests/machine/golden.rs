@@ -1,5 +1,6 @@
 //! Random frames and their integers have one recorded hash each, in the rows of the golden pictures.
 
+use crate::frame_hash::hash;
 use crate::scenes::*;
 use glam::DVec3;
 use shiftvox::frame::Frame;
@@ -19,21 +20,6 @@ fn compare(kind: &str, found: u128) {
     );
 }
 
-/// XXH3-128 of all voxels, then all nodes, then what is blended, little-endian.
-fn hash(frame: &Frame) -> u128 {
-    let mut hash = Xxh3::new();
-    for number in frame.voxel.iter().flatten() {
-        hash.update(&number.to_le_bytes());
-    }
-    for node in &frame.node {
-        hash.update(&node.to_le_bytes());
-    }
-    for blend in frame.blend.iter().flatten() {
-        hash.update(format!("{blend:?}").as_bytes());
-    }
-    hash.digest128()
-}
-
 const RECORDED_FRAMES: u32 = 400;
 
 /// The rules `any` and `center`, at all tolerances, in words of many widths.
@@ -41,7 +27,7 @@ const RECORDED_FRAMES: u32 = 400;
 fn pictures_by_box_and_centre_are_those_recorded() {
     let specs = "terrain,depth=6,seed=3 menger,depth=3 sierpinski,depth=7 shell,depth=5 truss,depth=5 \
                  wires,depth=5";
-    let graph = |spec| graph_of_spec(&format!("gen:{spec}"));
+    let graph = |spec| graph_of(&format!("gen:{spec}"));
     let graphs: Vec<_> = specs.split(' ').map(graph).collect();
     let mut dice = Dice::new(5);
     let mut hash = Xxh3::new();

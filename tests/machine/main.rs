@@ -7,6 +7,8 @@ mod common;
 mod counts;
 mod cycles_by_hand;
 mod differential;
+#[path = "../../crates/web/src/frame_hash.rs"]
+mod frame_hash;
 mod golden;
 mod oracle;
 mod order;

@@ -8,7 +8,9 @@ use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::{Colors, Frame};
 use shiftvox::machine::Machine;
 use shiftvox::project::viewer::FRAMES_UNCHANGED;
-use shiftvox::project::{Camera, Contents, Coverage, Engine, FrameSetup, SetupOptions, Viewer};
+use shiftvox::project::{
+    Camera, Canvas, Contents, Coverage, Engine, FrameSetup, SetupOptions, Viewer,
+};
 use shiftvox::rays::Rays;
 
 fn settings(number: usize) -> SetupOptions {
@@ -44,7 +46,8 @@ proptest! {
         let wider = Camera { width: first.width + 1, ..first };
         let cameras = [first, inside, moved, wider];
         let contents = if with_records { Contents::Records } else { Contents::Voxels };
-        let mut viewer = Viewer::new(graph.view(), Box::new(Machine::default()), contents);
+        let canvas = Canvas::new(Box::new(Machine::default()));
+        let mut viewer = Viewer::new(graph.view(), canvas, contents);
         let mut last: Option<FrameSetup> = None;
         for (camera, options, step) in steps {
             if step == 0 {
@@ -131,7 +134,7 @@ fn used_engines_and_frames_of_other_sizes_draw_as_new_ones() {
                 kind == 0 && (coverage == Coverage::Any || with_records)
             );
             *frame = Frame::new(3, 5, with_records);
-            assert_eq!(used.draw(&view, &setup, frame), Ok(()), "{what}");
+            assert_eq!(used.render(&view, &setup, frame), Ok(counts), "{what}");
             assert!(*frame == right, "{what}");
             let mut right = Colors::new(size.0, size.1);
             let drawn = new().draw_colors(&view, &graph.color, &setup, &mut right);

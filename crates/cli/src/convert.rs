@@ -10,7 +10,7 @@ use super::console::Console;
 use super::error::{CliError, Kind};
 use super::scene_files::{self, Written};
 use super::{far, report, scenes, textured};
-use shiftvox::graph::{BuildOptions, ExternalOptions};
+use shiftvox::graph::ExternalOptions;
 use shiftvox::scene::{self, Source};
 use shiftvox::whole;
 use shiftvox_mesh::far::view::Opacity;
@@ -200,7 +200,6 @@ fn build_outside_memory(
     let beside = whole::folder_of(&args.output);
     whole::make_folder(beside)?;
     let external = ExternalOptions {
-        build: BuildOptions::default(),
         memory,
         temporary: args.temp.as_deref().unwrap_or(beside).to_owned(),
     };
@@ -227,7 +226,7 @@ fn build_outside_memory(
         what: "voxels",
         count: built.voxels,
         bytes: built.bytes,
-        warnings: built.info.map(|info| info.warnings).unwrap_or_default(),
+        warnings: built.warnings,
     };
     written.report("convert", &args.input, &args.output, console);
     Ok(())

@@ -7,7 +7,6 @@ use shiftvox::budget::{DiskShortage, Shortage};
 use shiftvox::drawing::DrawError;
 use shiftvox::graph::ExternalError;
 use shiftvox::graph::file::FileError;
-use shiftvox::graph::vxg::VxgError;
 use shiftvox::machine::SimulateError;
 use shiftvox::picture::ResolveError;
 use shiftvox::project::{EngineError, SetupError};
@@ -255,22 +254,16 @@ impl From<OpenError> for CliError {
             OpenError::TooMany { .. } => failure.advise(
                 "build it out of core: shiftvox convert SCENE OUT.vxg --memory 2G; then draw OUT.vxg",
             ),
-            OpenError::External { error, .. } => {
-                let kind = match error {
-                    ExternalError::Temporary { .. } | ExternalError::Write(_) if !is_limit => Kind::Run,
-                    _ => failure.kind,
+            OpenError::Build { error, .. } => {
+                let failure = match error {
+                    ExternalError::Temporary { .. } => Self { kind: Kind::Run, ..failure },
+                    ExternalError::Disk(_) => failure,
+                    ExternalError::Write(error) => return error.into(),
+                    ExternalError::Build(_) => return failure,
                 };
-                let failure = Self { kind, ..failure };
-                match error {
-                    ExternalError::Temporary { .. } | ExternalError::Disk(_) => {
-                        failure.advise("choose a folder with more room with --temp")
-                    }
-                    ExternalError::Write(VxgError::Exists(_)) => {
-                        failure.advise("give another name, or --force to replace it")
-                    }
-                    _ => failure,
-                }
+                failure.advise("choose a folder with more room with --temp")
             }
+            OpenError::Graph(error) => error.into(),
             _ => failure,
         }
     }
@@ -284,10 +277,11 @@ impl From<SceneError> for CliError {
 
 impl From<FileError> for CliError {
     fn from(error: FileError) -> Self {
-        match error.is_limit() {
-            true => Self::new(Kind::Limit, error)
+        match error {
+            FileError::Write(error) => error.into(),
+            error if error.is_limit() => Self::new(Kind::Limit, error)
                 .advise("give the program more memory or address space"),
-            false => Self::input(error),
+            error => Self::input(error),
         }
     }
 }

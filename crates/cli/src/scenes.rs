@@ -189,7 +189,7 @@ pub(super) fn options(args: &SceneArgs) -> OpenOptions {
 }
 
 fn ready(mut opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant) -> Scene {
-    let info = opened.info.as_ref();
+    let palette = opened.info.palette.len();
     if let (Some(up), Some(mesh)) = (mesh_up, &mut opened.graph.placement.mesh) {
         mesh.y_up = up == Up::Y;
     }
@@ -198,8 +198,8 @@ fn ready(mut opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant
         format: opened.format,
         up: mesh_up.unwrap_or(Up::of(&opened.graph)),
         mesh: opened.mesh,
-        palette: info.map(|i| i.palette.len()).filter(|&entries| entries > 0),
-        warnings: info.map(|i| i.warnings.clone()).unwrap_or_default(),
+        palette: Some(palette).filter(|&entries| entries > 0),
+        warnings: opened.info.warnings,
         graph: opened.graph,
         is_verified: opened.is_verified,
         load_ms: milliseconds_since(started),

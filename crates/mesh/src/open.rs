@@ -57,15 +57,6 @@ pub struct OpenOptions {
     pub mesh: MeshOptions,
 }
 
-/// Opens a file of any kind, or makes the scene of a `gen:` specification: [`scene::open`] with meshes.
-pub fn open(
-    source: &str,
-    options: &OpenOptions,
-    progress: &dyn Progress,
-) -> Result<Opened, OpenError> {
-    scene::open(source, &options.voxels, &options.mesh, progress)
-}
-
 /// Opens a file that is held in memory; a mesh finds no other files. [`scene::open_bytes`] with meshes.
 pub fn open_bytes(
     bytes: &[u8],
@@ -101,7 +92,7 @@ pub fn read_mesh(
     let beside = same_folder(beside.unwrap_or(Path::new("")));
     let mesh = read_into(builder, &bytes, kind, &name, &beside, mtl_colors, progress);
     let mesh = mesh.map_err(|error| match error {
-        SceneError::Io { source, .. } => OpenError::External {
+        SceneError::Io { source, .. } => OpenError::Build {
             source_name: name.clone(),
             error: ExternalError::Temporary {
                 folder: folder.path.clone(),
@@ -214,28 +205,9 @@ impl MeshVoxels for Ready {
         progress: &dyn Progress,
     ) -> (SceneInfo, MeshSummary) {
         let started = Instant::now();
-        let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
-        let report = voxelize::voxelize(
-            &self.mesh,
-            &self.grid,
-            self.opacities,
-            &mut |voxel| {
-                for k in 0..3 {
-                    low[k] = low[k].min(voxel.index[k]);
-                    high[k] = high[k].max(voxel.index[k]);
-                }
-                sink(voxel);
-            },
-            progress,
-        );
+        let report = voxelize::voxelize(&self.mesh, &self.grid, self.opacities, sink, progress);
         let voxelize_ms = started.elapsed().as_secs_f64() * 1e3;
         let info = SceneInfo {
-            voxels: report.voxels,
-            bounds: (report.voxels > 0).then_some((low, high)),
-            models: 1,
-            instances: 1,
-            has_colors: true,
-            has_normals: true,
             warnings: self.mesh.warnings().to_vec(),
             ..SceneInfo::default()
         };

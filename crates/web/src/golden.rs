@@ -12,13 +12,14 @@ use hwmodel::count::Counter;
 use shiftvox::Coverage;
 use shiftvox::fast::{Fast, FastOptions, Instructions};
 use shiftvox::frame::Frame;
-use shiftvox::graph::{BuildOptions, Builder, Graph, Normals, Opacity, Silent};
+use shiftvox::graph::{Graph, Opacity, Silent};
 use shiftvox::machine::{Machine, RecordStage};
 use shiftvox::project::{CageKind, Camera, Engine, FrameSetup, SetupOptions as Options};
 use shiftvox::rays::Rays;
-use shiftvox::scene::generate::Spec;
-use shiftvox::scene::{NoMeshes, OpenOptions, open_bytes};
-use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128_with_seed};
+use shiftvox::scene::{NoMeshes, OpenOptions, Source, open_bytes, open_source};
+use xxhash_rust::xxh3::{xxh3_64, xxh3_128_with_seed};
+
+use super::frame_hash::hash;
 
 /// The stages in the order in which the identity has their counts.
 const STAGES: [RecordStage; RecordStage::ALL.len()] = {
@@ -187,40 +188,19 @@ fn draw(row: &str, used: &mut Machine) -> (Frame, Option<Counter>) {
     (frame, Some(drawn.expect(row).1))
 }
 
-/// The graph of a generator, or of a file, without normals, which no engine reads.
+/// The graph of a generator, or of a file.
 fn graph_of(name: &str) -> Graph {
-    let options = BuildOptions {
-        normals: Normals::None,
+    let options = OpenOptions::default();
+    let opened = match FILES.iter().find(|(file, _)| *file == name) {
+        Some((_, bytes)) => open_bytes(bytes, name, &options, &NoMeshes, &Silent),
+        None => open_source(
+            Source::Generated(name.to_owned()),
+            &options,
+            &NoMeshes,
+            &Silent,
+        ),
     };
-    let mut builder = Builder::new(options);
-    if name.starts_with("gen:") {
-        let spec = Spec::parse(name).expect(name);
-        if let Some(graph) = spec.linked() {
-            return graph;
-        }
-        spec.voxels(&mut |voxel| builder.push(voxel), &Silent);
-    } else {
-        let (_, bytes) = FILES.iter().find(|(file, _)| *file == name).expect(name);
-        let options = OpenOptions::default();
-        let opened = open_bytes(bytes, name, &options, &NoMeshes, &Silent).expect(name);
-        return opened.graph;
-    }
-    builder.finish(([0.0; 3], 1.0), &Silent).expect(name)
-}
-
-/// XXH3-128 of all voxels, then all nodes, then what is blended, little-endian.
-fn hash(frame: &Frame) -> u128 {
-    let mut hash = Xxh3::new();
-    for number in frame.voxel.iter().flatten() {
-        hash.update(&number.to_le_bytes());
-    }
-    for node in &frame.node {
-        hash.update(&node.to_le_bytes());
-    }
-    for blend in frame.blend.iter().flatten() {
-        hash.update(format!("{blend:?}").as_bytes());
-    }
-    hash.digest128()
+    opened.expect(name).graph
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 #![allow(unsafe_code, reason = "names of exports")]
 
 mod drawer;
+mod frame_hash;
 pub mod golden;
 
 use std::cell::RefCell;

@@ -91,13 +91,13 @@ struct FileRow {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+pub(super) struct File {
     #[serde(default)]
-    quadratic: Vec<String>,
+    pub(super) quadratic: Vec<String>,
     #[serde(default)]
-    follows: BTreeMap<String, String>,
-    spread: Option<Spread>,
-    technology: Option<Technology>,
+    pub(super) follows: BTreeMap<String, String>,
+    pub(super) spread: Option<Spread>,
+    pub(super) technology: Option<Technology>,
     #[serde(default)]
     sources: BTreeMap<String, String>,
     #[serde(default)]
@@ -186,17 +186,7 @@ impl FileRow {
     }
 }
 
-/// A file of rows.
-#[derive(Debug)]
-pub(super) struct Parsed {
-    pub(super) quadratic: Vec<String>,
-    pub(super) follows: BTreeMap<String, String>,
-    pub(super) spread: Option<Spread>,
-    pub(super) technology: Option<Technology>,
-    pub(super) rows: Rows,
-}
-
-pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
+pub(super) fn parse(file: &str, text: &str) -> Result<(File, Rows), CostError> {
     let parsed: File = toml::from_str(text)
         .map_err(|error| CostError(format!("{file} is no cost table: {error}")))?;
     let mut rows = Rows::new();
@@ -255,11 +245,5 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
     if let Some(technology) = parsed.technology {
         technology.check(file)?;
     }
-    Ok(Parsed {
-        quadratic: parsed.quadratic,
-        follows: parsed.follows,
-        spread: parsed.spread,
-        technology: parsed.technology,
-        rows,
-    })
+    Ok((parsed, rows))
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use super::rows::{
-    AREA_FILE, CostError, CostRow, ENERGY_FILE, Goal, Parsed, Quantity, Rows, Spread, parse,
+    AREA_FILE, CostError, CostRow, ENERGY_FILE, Goal, Quantity, Rows, Spread, parse,
 };
 use super::technology::Technology;
 
@@ -90,14 +90,8 @@ impl CostTable {
     /// # Errors
     /// When the text is not a cost table, or a row is invalid or occurs twice.
     pub fn with_overrides(mut self, file: &str, text: &str) -> Result<Self, CostError> {
-        let Parsed {
-            quadratic,
-            follows,
-            spread,
-            technology,
-            rows,
-        } = parse(file, text)?;
-        if let Some(technology) = technology {
+        let (parsed, rows) = parse(file, text)?;
+        if let Some(technology) = parsed.technology {
             self.move_to(technology);
         }
         self.rows.retain(|(quantity, operation, goal), _| {
@@ -109,9 +103,9 @@ impl CostTable {
             self.follows.remove(operation);
         }
         self.rows.extend(rows);
-        self.quadratic.extend(quadratic);
-        self.follows.extend(follows);
-        self.spread = spread.unwrap_or(self.spread);
+        self.quadratic.extend(parsed.quadratic);
+        self.follows.extend(parsed.follows);
+        self.spread = parsed.spread.unwrap_or(self.spread);
         Ok(self)
     }
 

@@ -89,8 +89,8 @@ pub use hardware::{
     Banks, Cache, Hardware, HardwareError, Independence, MAX_CONTEXTS, MAX_LANES, MAX_TILE_LEVELS,
     Organisation, OuterMemory, PRESETS, Pixels, Stack, StackHolds, StackOverflow, Unit,
 };
-pub use observe::{NoObserver, Observer, Progress, START, VisitSpan};
-pub use outer::{Dram, OuterRequest, RequestLog, RowReport};
+pub use observe::{NoObserver, Observer, START, VisitSpan};
+pub use outer::{Dram, OuterRequest, RowReport, write_ramulator};
 pub use report::{
     Bottleneck, Bound, CacheReport, Cause, ContextReport, CycleReport, REPORT_VERSION, StackReport,
     StageReport, Stalls,

@@ -45,7 +45,7 @@ pub trait Observer {
     }
 
     /// At the end, all requests to outer memory.
-    fn requests(&mut self, _: &[OuterRequest]) {}
+    fn requests(&mut self, _: Vec<OuterRequest>) {}
 
     /// Cycle and number of records, every few thousand records.
     fn progress(&mut self, _cycle: u64, _records: u64) {}
@@ -57,16 +57,6 @@ pub struct NoObserver;
 
 impl Observer for NoObserver {}
 
-/// Calls a function at every [`Observer::progress`].
-#[derive(Debug, Clone, Copy)]
-pub struct Progress<F>(pub F);
-
-impl<F: FnMut(u64, u64)> Observer for Progress<F> {
-    fn progress(&mut self, cycle: u64, records: u64) {
-        (self.0)(cycle, records);
-    }
-}
-
 /// Keeps all visits.
 impl Observer for Vec<VisitSpan> {
     fn watches_visits(&self) -> bool {
@@ -75,31 +65,5 @@ impl Observer for Vec<VisitSpan> {
 
     fn visit(&mut self, span: &VisitSpan) {
         self.push(*span);
-    }
-}
-
-/// Both observe.
-impl<A: Observer, B: Observer> Observer for (A, B) {
-    fn watches_visits(&self) -> bool {
-        self.0.watches_visits() || self.1.watches_visits()
-    }
-
-    fn visit(&mut self, span: &VisitSpan) {
-        self.0.visit(span);
-        self.1.visit(span);
-    }
-
-    fn watches_requests(&self) -> bool {
-        self.0.watches_requests() || self.1.watches_requests()
-    }
-
-    fn requests(&mut self, requests: &[OuterRequest]) {
-        self.0.requests(requests);
-        self.1.requests(requests);
-    }
-
-    fn progress(&mut self, cycle: u64, records: u64) {
-        self.0.progress(cycle, records);
-        self.1.progress(cycle, records);
     }
 }

@@ -6,7 +6,6 @@ use std::io::{self, Write};
 use serde::{Deserialize, Serialize};
 
 use super::hardware::OuterMemory;
-use super::observe::Observer;
 use crate::memory::PIXEL_BITS;
 
 /// Banks that each keep one row open. Times are cycles of the design's clock.
@@ -212,50 +211,23 @@ impl OuterPort {
     }
 }
 
-/// Bytes of a request in [`RequestLog::write_ramulator`].
+/// Bytes of a request in [`write_ramulator`].
 const BURST_BYTES: u64 = 64;
 
-/// Keeps the requests to outer memory, if asked for.
-#[derive(Debug, Clone, Default)]
-pub struct RequestLog {
-    wanted: bool,
-    /// In the order in which the port accepts them.
-    pub requests: Vec<OuterRequest>,
-}
-
-impl RequestLog {
-    /// A log that keeps all requests, or none.
-    pub fn new(wanted: bool) -> Self {
-        Self {
-            wanted,
-            ..Self::default()
+/// Writes the memory trace that Ramulator reads with `--mode=dram`: a line per request of 64 bytes, in the order in which
+/// the port accepts them, its address in hexadecimal and `R` or `W`. The format has no times. A request of fewer bytes is
+/// a line of its own.
+pub fn write_ramulator(mut requests: Vec<OuterRequest>, mut to: impl Write) -> io::Result<()> {
+    requests.sort_by_key(|request| request.cycle);
+    for request in requests {
+        let way = if request.write { 'W' } else { 'R' };
+        let bursts =
+            request.address / BURST_BYTES..=(request.address + request.bytes - 1) / BURST_BYTES;
+        for burst in bursts {
+            writeln!(to, "{:#x} {way}", burst * BURST_BYTES)?;
         }
     }
-
-    /// Writes the memory trace that Ramulator reads with `--mode=dram`: a line per request of 64 bytes, its address in
-    /// hexadecimal and `R` or `W`. The format has no times. A request of fewer bytes is a line of its own.
-    pub fn write_ramulator(&self, mut to: impl Write) -> io::Result<()> {
-        for request in &self.requests {
-            let way = if request.write { 'W' } else { 'R' };
-            let bursts =
-                request.address / BURST_BYTES..=(request.address + request.bytes - 1) / BURST_BYTES;
-            for burst in bursts {
-                writeln!(to, "{:#x} {way}", burst * BURST_BYTES)?;
-            }
-        }
-        Ok(())
-    }
-}
-
-impl Observer for RequestLog {
-    fn watches_requests(&self) -> bool {
-        self.wanted
-    }
-
-    fn requests(&mut self, requests: &[OuterRequest]) {
-        self.requests = requests.to_vec();
-        self.requests.sort_by_key(|request| request.cycle);
-    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -317,10 +289,8 @@ mod tests {
         for write in [true, true, false, false] {
             port.book_spilled(90, 8 * 65, write);
         }
-        let mut log = RequestLog::new(true);
-        log.requests(&port.log.take().unwrap());
         let mut text = Vec::new();
-        log.write_ramulator(&mut text).unwrap();
+        write_ramulator(port.log.take().unwrap(), &mut text).unwrap();
         let expected = "0x40000080 R\n0x400000c0 R\n0x80000040 W\n\
             0xc0000000 W\n0xc0000040 W\n0xc0000040 W\n0xc0000080 W\n\
             0xc0000040 R\n0xc0000080 R\n0xc0000000 R\n0xc0000040 R\n";

@@ -476,7 +476,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         let cycles = end.max(self.memories.pixels.last());
         self.account(cycles);
         if let Some(requests) = self.memories.outer.log.take() {
-            self.observer.requests(&requests);
+            self.observer.requests(requests);
         }
         let most_passes = *self.workload.log().most_passes();
         self.totals.report(

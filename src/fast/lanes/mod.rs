@@ -4,6 +4,41 @@
 //! Each large step of the traversal runs in [`Isa::vectorize`]. Functions below it that use lanes are
 //! `#[inline(always)]`.
 
+/// Vectors of a set, each a register, with the intrinsics that load and fill it. Those that read no memory stand in
+/// `intrinsics!`, which each set defines.
+#[allow(unused_macros, reason = "some processors have no vectors")]
+macro_rules! lanes {
+    ($($name:ident([$lane:ty; $n:literal] in $register:ty, $load:ident, $splat:ident);)*) => {$(
+        #[derive(Debug, Clone, Copy)]
+        pub(in crate::fast) struct $name($register);
+
+        impl Lanes<$n> for $name {
+            type Isa = Vector;
+            type Lane = $lane;
+            #[inline(always)]
+            fn load(_: Vector, values: &[$lane; $n]) -> Self {
+                // SAFETY: a `Vector` is only made where its set was found. The load is of the array's lanes.
+                unsafe { Self($load(values.as_ptr().cast())) }
+            }
+            #[inline(always)]
+            fn splat(_: Vector, value: $lane) -> Self {
+                intrinsics!(Self($splat(value as _)))
+            }
+        }
+    )*};
+}
+
+/// Methods that are an intrinsic each.
+#[allow(unused_macros, reason = "some processors have no vectors")]
+macro_rules! methods {
+    ($($name:ident($($other:ident),*) = $intrinsic:ident;)*) => {$(
+        #[inline(always)]
+        fn $name(self $(, $other: Self)*) -> Self {
+            intrinsics!(Self($intrinsic(self.0 $(, $other.0)*)))
+        }
+    )*};
+}
+
 mod scalar;
 #[cfg(test)]
 mod tests;

@@ -10,29 +10,8 @@ mod halves;
 #[derive(Debug, Clone, Copy)]
 pub(in crate::fast) struct Vector;
 
-macro_rules! lanes {
-    ($($name:ident([$lane:ty; $n:literal] in $register:ty, $load:ident, $splat:ident);)*) => {$(
-        #[derive(Debug, Clone, Copy)]
-        pub(in crate::fast) struct $name($register);
-
-        impl Lanes<$n> for $name {
-            type Isa = Vector;
-            type Lane = $lane;
-            #[inline(always)]
-            fn load(_: Vector, values: &[$lane; $n]) -> Self {
-                // SAFETY: the load is of the array's lanes.
-                Self(unsafe { $load(values.as_ptr()) })
-            }
-            #[inline(always)]
-            fn splat(_: Vector, value: $lane) -> Self {
-                neon!(Self($splat(value)))
-            }
-        }
-    )*};
-}
-
 /// An expression of intrinsics that read no memory.
-macro_rules! neon {
+macro_rules! intrinsics {
     ($value:expr) => {
         // SAFETY: all 64-bit Arm processors have these instructions.
         unsafe { $value }
@@ -44,15 +23,6 @@ lanes! {
     Doubles2([f64; 2] in float64x2_t, vld1q_f64, vdupq_n_f64);
     Shorts8([i16; 8] in int16x8_t, vld1q_s16, vdupq_n_s16);
     Masks2([u64; 2] in uint64x2_t, vld1q_u64, vdupq_n_u64);
-}
-
-macro_rules! methods {
-    ($($name:ident($($other:ident),*) = $intrinsic:ident;)*) => {$(
-        #[inline(always)]
-        fn $name(self $(, $other: Self)*) -> Self {
-            neon!(Self($intrinsic(self.0 $(, $other.0)*)))
-        }
-    )*};
 }
 
 macro_rules! floats {
@@ -73,15 +43,15 @@ macro_rules! floats {
             }
             #[inline(always)]
             fn fma(self, by: Self, plus: Self) -> Self {
-                neon!(Self($fma(plus.0, self.0, by.0)))
+                intrinsics!(Self($fma(plus.0, self.0, by.0)))
             }
             #[inline(always)]
             fn fms(self, by: Self, less: Self) -> Self {
-                neon!(Self($fma($neg(less.0), self.0, by.0)))
+                intrinsics!(Self($fma($neg(less.0), self.0, by.0)))
             }
             #[inline(always)]
             fn fnma(self, by: Self, from: Self) -> Self {
-                neon!(Self($fms(from.0, self.0, by.0)))
+                intrinsics!(Self($fms(from.0, self.0, by.0)))
             }
         }
     };
@@ -121,7 +91,7 @@ fn highest(lanes: uint32x4_t) -> u32 {
 
 #[inline(always)]
 fn four(lanes: uint32x4_t) -> [u32; 4] {
-    neon!([
+    intrinsics!([
         vgetq_lane_u32::<0>(lanes),
         vgetq_lane_u32::<1>(lanes),
         vgetq_lane_u32::<2>(lanes),
@@ -132,7 +102,7 @@ fn four(lanes: uint32x4_t) -> [u32; 4] {
 impl F32x4 for Floats4 {
     #[inline(always)]
     fn flip(self, signs: Self) -> Self {
-        neon!({
+        intrinsics!({
             let [own, signs] = [self, signs].map(|lanes| vreinterpretq_u32_f32(lanes.0));
             Self(vreinterpretq_f32_u32(veorq_u32(own, signs)))
         })
@@ -147,7 +117,7 @@ impl F32x4 for Floats4 {
     }
     #[inline(always)]
     fn signs(self) -> u32 {
-        neon!(highest(vreinterpretq_u32_f32(self.0)))
+        intrinsics!(highest(vreinterpretq_u32_f32(self.0)))
     }
     #[inline(always)]
     fn indices<const N: usize>(self) -> [usize; 3] {
@@ -157,11 +127,11 @@ impl F32x4 for Floats4 {
     }
     #[inline(always)]
     fn values(self) -> [f32; 4] {
-        neon!(four(vreinterpretq_u32_f32(self.0))).map(f32::from_bits)
+        intrinsics!(four(vreinterpretq_u32_f32(self.0))).map(f32::from_bits)
     }
     #[inline(always)]
     fn sums(self, other: Self) -> Self {
-        neon!({
+        intrinsics!({
             let pairs = vpaddq_f32(self.0, other.0);
             Self(vpaddq_f32(pairs, pairs))
         })
@@ -175,7 +145,7 @@ impl F32x4 for Floats4 {
 impl Tests<4> for Floats4 {
     #[inline(always)]
     fn at_most(self, other: Self) -> u8 {
-        neon!(highest(vcleq_f32(self.0, other.0))) as u8
+        intrinsics!(highest(vcleq_f32(self.0, other.0))) as u8
     }
     #[inline(always)]
     fn reciprocal(self) -> Self {
@@ -183,11 +153,11 @@ impl Tests<4> for Floats4 {
     }
     #[inline(always)]
     fn whole(self) -> [i32; 4] {
-        neon!(four(vreinterpretq_u32_s32(vcvtq_s32_f32(self.0)))).map(|whole| whole as i32)
+        intrinsics!(four(vreinterpretq_u32_s32(vcvtq_s32_f32(self.0)))).map(|whole| whole as i32)
     }
     #[inline(always)]
     fn indices<const N: usize>(self) -> [u32; 4] {
-        four(neon!({
+        four(intrinsics!({
             let whole = vreinterpretq_u32_s32(vcvtq_s32_f32(self.0));
             vminq_u32(whole, vdupq_n_u32(N as u32 - 1))
         }))
@@ -202,7 +172,7 @@ impl Shorts<8> for Shorts8 {
     }
     #[inline(always)]
     fn max_unsigned(self, other: Self) -> Self {
-        neon!({
+        intrinsics!({
             let [own, other] = [self, other].map(|lanes| vreinterpretq_u16_s16(lanes.0));
             Self(vreinterpretq_s16_u16(vmaxq_u16(own, other)))
         })
@@ -228,7 +198,7 @@ impl Masks<2> for Masks2 {
     }
     #[inline(always)]
     fn zeros(self) -> u32 {
-        neon!({
+        intrinsics!({
             let zeros = vceqzq_u64(self.0);
             (vgetq_lane_u64::<0>(zeros) & 1 | vgetq_lane_u64::<1>(zeros) & 2) as u32
         })
@@ -247,7 +217,7 @@ impl Isa for Vector {
     }
     #[inline(always)]
     fn narrow(self, Pair(low, high): Self::F64x4) -> Floats4 {
-        neon!(Floats4(vcvt_high_f32_f64(vcvt_f32_f64(low.0), high.0)))
+        intrinsics!(Floats4(vcvt_high_f32_f64(vcvt_f32_f64(low.0), high.0)))
     }
     #[inline(always)]
     fn join(self, low: Floats4, high: Floats4) -> Self::F32x8 {
@@ -255,12 +225,12 @@ impl Isa for Vector {
     }
     #[inline(always)]
     fn broadcast<const LANE: i32>(self, from: Floats4) -> Self::F32x8 {
-        let all = neon!(Floats4(vdupq_laneq_f32::<LANE>(from.0)));
+        let all = intrinsics!(Floats4(vdupq_laneq_f32::<LANE>(from.0)));
         Pair(all, all)
     }
     #[inline(always)]
     fn broadcast_rounded<const LANE: i32>(self, from: Floats4) -> Self::I16x16 {
-        let all = neon!({
+        let all = intrinsics!({
             let rounded = vqmovn_s32(vcvtnq_s32_f32(from.0));
             Shorts8(vdupq_lane_s16::<LANE>(rounded))
         });

@@ -10,39 +10,18 @@ mod halves;
 #[derive(Debug, Clone, Copy)]
 pub(in crate::fast) struct Vector;
 
-macro_rules! lanes {
-    ($($name:ident([$lane:ty; $n:literal], $load:ident($($at:literal)*), $splat:ident);)*) => {$(
-        #[derive(Debug, Clone, Copy)]
-        pub(in crate::fast) struct $name(v128);
-
-        impl Lanes<$n> for $name {
-            type Isa = Vector;
-            type Lane = $lane;
-            #[inline(always)]
-            fn load(_: Vector, values: &[$lane; $n]) -> Self {
-                Self($load($(values[$at]),*))
-            }
-            #[inline(always)]
-            fn splat(_: Vector, value: $lane) -> Self {
-                Self($splat(value))
-            }
-        }
-    )*};
+/// An expression of intrinsics.
+macro_rules! intrinsics {
+    ($value:expr) => {
+        $value
+    };
 }
+
 lanes! {
-    Floats4([f32; 4], f32x4(0 1 2 3), f32x4_splat);
-    Doubles2([f64; 2], f64x2(0 1), f64x2_splat);
-    Shorts8([i16; 8], i16x8(0 1 2 3 4 5 6 7), i16x8_splat);
-    Masks2([u64; 2], u64x2(0 1), u64x2_splat);
-}
-
-macro_rules! methods {
-    ($($name:ident($($other:ident),*) = $intrinsic:ident;)*) => {$(
-        #[inline(always)]
-        fn $name(self $(, $other: Self)*) -> Self {
-            Self($intrinsic(self.0 $(, $other.0)*))
-        }
-    )*};
+    Floats4([f32; 4] in v128, v128_load, f32x4_splat);
+    Doubles2([f64; 2] in v128, v128_load, f64x2_splat);
+    Shorts8([i16; 8] in v128, v128_load, i16x8_splat);
+    Masks2([u64; 2] in v128, v128_load, u64x2_splat);
 }
 
 macro_rules! floats {

@@ -7,48 +7,19 @@ use super::*;
 pub(in crate::fast) struct Vector(());
 
 /// An expression of intrinsics that read no memory.
-macro_rules! avx {
+macro_rules! intrinsics {
     ($value:expr) => {
         // SAFETY: a `Vector` and its lanes are only made where these features were found.
         unsafe { $value }
     };
 }
 
-macro_rules! lanes {
-    ($($name:ident([$lane:ty; $n:literal] in $register:ty, $load:ident, $splat:ident);)*) => {$(
-        #[derive(Debug, Clone, Copy)]
-        pub(in crate::fast) struct $name($register);
-
-        impl Lanes<$n> for $name {
-            type Isa = Vector;
-            type Lane = $lane;
-            #[inline(always)]
-            fn load(_: Vector, values: &[$lane; $n]) -> Self {
-                // SAFETY: as above. The load is of the array's lanes.
-                unsafe { Self($load(values.as_ptr().cast())) }
-            }
-            #[inline(always)]
-            fn splat(_: Vector, value: $lane) -> Self {
-                avx!(Self($splat(value as _)))
-            }
-        }
-    )*};
-}
 lanes! {
     Floats4([f32; 4] in __m128, _mm_loadu_ps, _mm_set1_ps);
     Floats8([f32; 8] in __m256, _mm256_loadu_ps, _mm256_set1_ps);
     Doubles4([f64; 4] in __m256d, _mm256_loadu_pd, _mm256_set1_pd);
     Shorts16([i16; 16] in __m256i, _mm256_loadu_si256, _mm256_set1_epi16);
     Masks4([u64; 4] in __m256i, _mm256_loadu_si256, _mm256_set1_epi64x);
-}
-
-macro_rules! methods {
-    ($($name:ident($($other:ident),*) = $intrinsic:ident;)*) => {$(
-        #[inline(always)]
-        fn $name(self $(, $other: Self)*) -> Self {
-            avx!(Self($intrinsic(self.0 $(, $other.0)*)))
-        }
-    )*};
 }
 
 macro_rules! floats {
@@ -71,7 +42,7 @@ macro_rules! floats {
             }
             #[inline(always)]
             fn abs(self) -> Self {
-                avx!(Self($and_not($set(-0.0), self.0)))
+                intrinsics!(Self($and_not($set(-0.0), self.0)))
             }
         }
     };
@@ -95,19 +66,19 @@ impl F32x4 for Floats4 {
     }
     #[inline(always)]
     fn next(self) -> Self {
-        avx!(Self(_mm_shuffle_ps::<NEXT>(self.0, self.0)))
+        intrinsics!(Self(_mm_shuffle_ps::<NEXT>(self.0, self.0)))
     }
     #[inline(always)]
     fn last(self) -> Self {
-        avx!(Self(_mm_shuffle_ps::<LAST>(self.0, self.0)))
+        intrinsics!(Self(_mm_shuffle_ps::<LAST>(self.0, self.0)))
     }
     #[inline(always)]
     fn signs(self) -> u32 {
-        avx!(_mm_movemask_ps(self.0) as u32)
+        intrinsics!(_mm_movemask_ps(self.0) as u32)
     }
     #[inline(always)]
     fn indices<const N: usize>(self) -> [usize; 3] {
-        avx!({
+        intrinsics!({
             let whole = _mm_min_epu32(_mm_cvttps_epi32(self.0), _mm_set1_epi32(N as i32 - 1));
             // The bounds are repeated for the compiler to see.
             [
@@ -126,14 +97,14 @@ impl F32x4 for Floats4 {
     }
     #[inline(always)]
     fn sums(self, other: Self) -> Self {
-        avx!({
+        intrinsics!({
             let pairs = _mm_hadd_ps(self.0, other.0);
             Self(_mm_hadd_ps(pairs, pairs))
         })
     }
     #[inline(always)]
     fn whole(self) -> [i32; 4] {
-        avx!({
+        intrinsics!({
             let whole = _mm_cvttps_epi32(self.0);
             [
                 _mm_cvtsi128_si32(whole),
@@ -151,7 +122,7 @@ impl Tests<8> for Floats8 {
     }
     #[inline(always)]
     fn at_most(self, other: Self) -> u8 {
-        avx!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) as u8)
+        intrinsics!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) as u8)
     }
     #[inline(always)]
     fn whole(self) -> [i32; 8] {
@@ -182,7 +153,7 @@ impl Shorts<16> for Shorts16 {
     }
     #[inline(always)]
     fn below(self, next: Self, limit: Self) -> u32 {
-        avx!({
+        intrinsics!({
             let own = _mm256_cmpgt_epi16(limit.0, self.0);
             let next = _mm256_cmpgt_epi16(limit.0, next.0);
             // Packing works by halves: their quarters 0 and 2, then 1 and 3.
@@ -198,7 +169,7 @@ impl Masks<4> for Masks4 {
     }
     #[inline(always)]
     fn zeros(self) -> u32 {
-        avx!({
+        intrinsics!({
             let zeros = _mm256_cmpeq_epi64(self.0, _mm256_setzero_si256());
             _mm256_movemask_pd(_mm256_castsi256_pd(zeros)) as u32
         })
@@ -247,15 +218,15 @@ impl Isa for Vector {
     }
     #[inline(always)]
     fn narrow(self, wide: Doubles4) -> Floats4 {
-        avx!(Floats4(_mm256_cvtpd_ps(wide.0)))
+        intrinsics!(Floats4(_mm256_cvtpd_ps(wide.0)))
     }
     #[inline(always)]
     fn join(self, low: Floats4, high: Floats4) -> Floats8 {
-        avx!(Floats8(_mm256_set_m128(high.0, low.0)))
+        intrinsics!(Floats8(_mm256_set_m128(high.0, low.0)))
     }
     #[inline(always)]
     fn broadcast<const LANE: i32>(self, from: Floats4) -> Floats8 {
-        avx!(Floats8(_mm256_broadcastss_ps(match LANE {
+        intrinsics!(Floats8(_mm256_broadcastss_ps(match LANE {
             0 => from.0,
             1 => _mm_movehdup_ps(from.0),
             _ => _mm_movehl_ps(from.0, from.0),
@@ -263,7 +234,7 @@ impl Isa for Vector {
     }
     #[inline(always)]
     fn broadcast_rounded<const LANE: i32>(self, from: Floats4) -> Shorts16 {
-        avx!({
+        intrinsics!({
             let rounded = _mm_cvtps_epi32(from.0);
             let rounded = _mm_packs_epi32(rounded, rounded);
             Shorts16(_mm256_broadcastw_epi16(match LANE {
@@ -275,7 +246,7 @@ impl Isa for Vector {
     }
     #[inline(always)]
     fn expand(self, bytes: u64, mask: u8) -> [u64; 2] {
-        avx!({
+        intrinsics!({
             let places = _pdep_u64(u64::from(mask), 0x0101_0101_0101_0101);
             let ones = (places << 8).wrapping_sub(places);
             [_pdep_u64(bytes, ones), ones]
@@ -317,6 +288,6 @@ impl Isa for Vector {
     fn prefetch<T>(self, entries: &[T], at: usize) {
         // Any address may be prefetched; nothing is read.
         let entry = entries.as_ptr().wrapping_add(at);
-        avx!(_mm_prefetch::<_MM_HINT_T0>(entry.cast()));
+        intrinsics!(_mm_prefetch::<_MM_HINT_T0>(entry.cast()));
     }
 }

@@ -13,7 +13,7 @@ use super::scratch::{Scratch, Spool};
 use super::tree::{ClusterNodes, FinishedNode, TreeWriter};
 use crate::graph::average::Sum;
 use crate::graph::normals::fill_cluster;
-use crate::graph::{Normals, PackedNormal, Progress, morton};
+use crate::graph::{PackedNormal, Progress, morton};
 
 const PART: usize = 64;
 const STEP: u64 = 1 << 16;
@@ -87,15 +87,13 @@ impl Finest {
     pub(super) fn finish(
         self,
         tree: &mut TreeWriter,
-        normals: Normals,
         centre: [f64; 3],
         sizes: &BufferSizes,
         scratch: &Arc<Scratch>,
         progress: &dyn Progress,
     ) -> io::Result<[Spool; 2]> {
         let shift = sizes.block_shift;
-        let estimated = normals == Normals::FromSurface && self.lacking;
-        let mut grid = if estimated {
+        let mut grid = if self.lacking {
             Some(Grid::new(shift, self.halo.merged(sizes, scratch)?))
         } else {
             None

@@ -26,8 +26,9 @@ use std::sync::Arc;
 
 use super::pushed::extent;
 use super::vxg::{self, VxgError};
-use super::{BuildError, BuildOptions, MeshBox, Placement, Progress, Voxel};
+use super::{BuildError, MeshBox, Placement, Progress, Voxel};
 use crate::budget::{self, DiskShortage};
+use crate::whole;
 use buffer_sizes::BufferSizes;
 use finest::Finest;
 use gather::Gather;
@@ -41,7 +42,6 @@ const GRAPH_BYTES: u64 = 5;
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct ExternalOptions {
-    pub build: BuildOptions,
     /// Limit of memory in bytes, including the program; exceeded below about 64 MB.
     pub memory: u64,
     /// Folder of the temporary files; about 22 bytes per voxel of a surface.
@@ -62,10 +62,7 @@ pub enum ExternalError {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ExternalReport {
-    /// Voxels pushed, including repeated ones.
-    pub pushed: u64,
     pub voxels: u64,
-    pub nodes: u64,
     pub bytes: u64,
     pub runs: u64,
     /// Most bytes that temporary files took at once, without the result.
@@ -103,14 +100,6 @@ impl ExternalBuilder {
         }
     }
 
-    pub fn len(&self) -> u64 {
-        self.gather.pushed
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// Fails where so many voxels, or their graph, take more disk than is free.
     pub fn expect(&self, voxels: u64, path: &Path) -> Result<(), ExternalError> {
         budget::check_disk(&self.options.temporary, voxels.saturating_mul(RUN_BYTES))?;
@@ -143,20 +132,17 @@ impl ExternalBuilder {
             mesh: self.mesh,
         };
         placement.check_world()?;
-        let pushed = self.gather.pushed;
-        if pushed == 0 {
+        if self.gather.pushed == 0 {
             return Err(BuildError::Empty.into());
         }
         let extent = extent(self.gather.min, self.gather.max)?;
-        vxg::check_free(path, overwrite)?;
+        whole::check_free(path, overwrite).map_err(VxgError::from)?;
         let built = self.build(extent, progress)?;
         let outline = built.outline(placement)?;
         let inner = outline.level_start[built.depth as usize];
         let nodes = u64::from(outline.level_start[built.depth as usize + 1]);
         let report = ExternalReport {
-            pushed,
             voxels: outline.voxels,
-            nodes,
             bytes: 0,
             runs: built.runs,
             temporary_bytes: built.scratch.peak(),
@@ -207,9 +193,8 @@ impl ExternalBuilder {
         let mut tree = TreeWriter::new(depth, &scratch, sizes.spool_bytes);
         let centre = extent.map(|side| side as f64 / 2.0);
         progress.begin("estimate normals, average", voxels);
-        let normals = options.build.normals;
         let [color, normal] = finest
-            .finish(&mut tree, normals, centre, &sizes, &scratch, progress)
+            .finish(&mut tree, centre, &sizes, &scratch, progress)
             .map_err(refused)?;
         let (levels, counts) = tree.finish().map_err(refused)?;
         progress.end();

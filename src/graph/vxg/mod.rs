@@ -11,5 +11,5 @@ pub use super::file::FileError as VxgError;
 pub(crate) use format::MAGIC;
 pub(crate) use read::verify_mapped;
 pub use read::{from_bytes, open, verify};
-pub(in crate::graph) use write::{check_free, write_pieces};
+pub(in crate::graph) use write::write_pieces;
 pub use write::{write, write_to};

@@ -13,7 +13,7 @@ use super::format::{
 };
 use crate::graph::Graph;
 use crate::graph::file::{ALIGNMENT, to_file};
-use crate::whole::{self, WholeError};
+use crate::whole;
 
 /// Writes a graph to a file that appears when complete. Missing folders are created. Fails when the graph breaks an
 /// invariant, when `path` exists and `overwrite` is false, or when the system refuses.
@@ -23,24 +23,7 @@ pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError
         let mut out = BufWriter::with_capacity(1 << 16, file);
         write_unchecked(graph, &mut out).and_then(|()| out.flush())
     };
-    whole::write_with(path, overwrite, fill).map_err(refused)
-}
-
-pub(in crate::graph) fn check_free(path: &Path, overwrite: bool) -> Result<(), VxgError> {
-    whole::check_free(path, overwrite).map_err(refused)
-}
-
-fn refused(error: WholeError) -> VxgError {
-    let io = |file, source| VxgError::Io {
-        file,
-        doing: "write it",
-        source,
-    };
-    match error {
-        WholeError::Exists(path) => VxgError::Exists(path),
-        WholeError::NoFolder(path) => io(path, io::ErrorKind::NotFound.into()),
-        WholeError::Io { path, source } => io(path, source),
-    }
+    Ok(whole::write_with(path, overwrite, fill)?)
 }
 
 /// Writes a file whose arrays do not exist as a whole, and returns its length in bytes. `lengths` are the bytes of the
@@ -62,7 +45,7 @@ pub(in crate::graph) fn write_pieces(
         out.write_all(&header(outline, &table, file_bytes))?;
         out.flush()
     };
-    whole::write_with(path, overwrite, fill).map_err(refused)?;
+    whole::write_with(path, overwrite, fill)?;
     Ok(file_bytes)
 }
 

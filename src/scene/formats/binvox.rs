@@ -2,27 +2,18 @@
 
 use std::io::{BufRead, ErrorKind, Read};
 
+use crate::scene::DEFAULT_COLOR;
 use crate::scene::emit::{Emitter, MAX_EXTENT};
 use crate::scene::fault::{Fault, Problem, printable};
 use crate::scene::input::Input;
-use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
 const MAX_LINE: u64 = 256;
 
 const AGAIN: &str = "the file is damaged or its exporter is at fault; export or copy it again";
 
-pub(super) fn read(
-    input: &mut Input<'_>,
-    _: &ReadOptions,
-    emitter: &mut Emitter<'_>,
-) -> Result<SceneInfo, Problem> {
+pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(), Problem> {
     let mut offset = 0;
     let [x, z, y] = read_header(input, &mut offset)?;
-    let mut info = SceneInfo {
-        models: 1,
-        instances: 1,
-        ..SceneInfo::default()
-    };
     let (mut cell, cells) = (0, x * z * y);
     while cell < cells {
         let mut run = [0; 2];
@@ -40,7 +31,6 @@ pub(super) fn read(
             return Err(fault("runs", offset, expected, count.to_string()).into());
         }
         if value != 0 {
-            info.stored_voxels += u64::from(count);
             for cell in cell..end {
                 let index = [cell / y / z, cell % y, cell / y % z].map(|i| i as i64);
                 emitter.voxel(index, DEFAULT_COLOR, None, || ("runs".to_owned(), offset))?;
@@ -50,12 +40,12 @@ pub(super) fn read(
         offset += 2;
     }
     if offset < input.length {
-        info.warnings.push(format!(
+        emitter.info.warnings.push(format!(
             "{} bytes after the last run were not read",
             input.length - offset
         ));
     }
-    Ok(info)
+    Ok(())
 }
 
 /// Reads the header up to `data`: the cells along x, z and y.

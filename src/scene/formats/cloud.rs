@@ -14,7 +14,6 @@ const SUGGESTED_SIDE: f64 = 256.0;
 
 pub(super) struct Cloud {
     size: Option<f64>,
-    points: u64,
     left_out: u64,
     odd: Option<Box<Fault>>,
     low: [f64; 3],
@@ -25,7 +24,6 @@ impl Cloud {
     pub(super) fn new(options: &ReadOptions) -> Self {
         Self {
             size: options.voxel_size,
-            points: 0,
             left_out: 0,
             odd: None,
             low: [f64::INFINITY; 3],
@@ -42,7 +40,6 @@ impl Cloud {
         place: impl Fn(Option<usize>) -> (String, u64),
         emitter: &mut Emitter<'_>,
     ) -> Result<(), Problem> {
-        self.points += 1;
         let mut index = [0; 3];
         if let Some(size) = self.size {
             let position = position.map(Number::real);
@@ -96,8 +93,6 @@ impl Cloud {
                 self.left_out
             ));
         }
-        (info.models, info.instances) = (1, 1);
-        info.stored_voxels = self.points;
         info.voxel_size = self.size;
         Ok(())
     }

@@ -19,7 +19,6 @@ use std::fmt;
 use super::emit::Emitter;
 use super::fault::Problem;
 use super::input::Input;
-use super::{ReadOptions, SceneInfo};
 use crate::graph::vxg;
 
 pub use ply_write::write_ply;
@@ -53,8 +52,7 @@ pub enum FileKind {
     Litematic,
 }
 
-pub(super) type Reader =
-    fn(&mut Input<'_>, &ReadOptions, &mut Emitter<'_>) -> Result<SceneInfo, Problem>;
+pub(super) type Reader = fn(&mut Input<'_>, &mut Emitter<'_>) -> Result<(), Problem>;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Contents {

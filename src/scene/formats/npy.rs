@@ -5,11 +5,12 @@
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
 use super::cloud::Cloud;
+use crate::picture::npy::{entry, lengths};
+use crate::scene::DEFAULT_COLOR;
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem, printable};
 use crate::scene::input::Input;
 use crate::scene::numbers::{Number, Scalar};
-use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
 const BLOCK_ROWS: u64 = 4096;
 const MAX_HEADER: u64 = 1 << 16;
@@ -42,9 +43,8 @@ impl Layout {
 
 pub(super) fn read(
     Input { reader, length }: &mut Input<'_>,
-    options: &ReadOptions,
     emitter: &mut Emitter<'_>,
-) -> Result<SceneInfo, Problem> {
+) -> Result<(), Problem> {
     let layout = read_header(reader, *length)?;
     let needed = u128::from(layout.rows) * u128::from(layout.columns * layout.width());
     let there = u128::from(length.saturating_sub(layout.data));
@@ -53,17 +53,13 @@ pub(super) fn read(
         let advice = "the file is cut short; save or copy it again";
         return Err(Fault::new("array", layout.data, expected, there.to_string(), advice).into());
     }
-    let mut info = SceneInfo {
-        has_colors: layout.columns > 3,
-        ..SceneInfo::default()
-    };
     if needed < there {
         let more = there - needed;
-        info.warnings.push(format!(
+        emitter.info.warnings.push(format!(
             "{more} bytes after the end of the array were not read"
         ));
     }
-    let (mut block, mut cloud) = (Vec::new(), Cloud::new(options));
+    let (mut block, mut cloud) = (Vec::new(), Cloud::new(emitter.options));
     for first in (0..layout.rows).step_by(BLOCK_ROWS as usize) {
         let rows = BLOCK_ROWS.min(layout.rows - first);
         read_block(reader, &layout, first, rows, &mut block).map_err(Problem::Read)?;
@@ -71,8 +67,7 @@ pub(super) fn read(
             pass_on(&layout, &block, (first, rows, row), &mut cloud, emitter)?;
         }
     }
-    cloud.finish(&mut info)?;
-    Ok(info)
+    cloud.finish(&mut emitter.info)
 }
 
 fn read_block<R: Read + Seek>(
@@ -171,7 +166,7 @@ fn fault(offset: u64, expected: impl Into<String>, found: impl Into<String>) -> 
 fn parse_header(text: &[u8], start: u64) -> Result<Layout, Box<Fault>> {
     let value = |key: &str| {
         let missing = || fault(start, format!("an entry '{key}'"), printable(text));
-        value(text, format!("'{key}'").as_bytes()).ok_or_else(missing)
+        entry(text, key).ok_or_else(missing)
     };
     let descr = value("descr")?;
     let (scalar, big_endian) = element_type(descr).ok_or_else(|| {
@@ -188,27 +183,26 @@ fn parse_header(text: &[u8], start: u64) -> Result<Layout, Box<Fault>> {
         ));
     }
     let shape = value("shape")?;
-    let sizes = rows_and_columns(shape).filter(|(_, columns)| [3, 6, 7].contains(columns));
-    let (rows, columns) = sizes.ok_or_else(|| {
+    let sizes = lengths(shape);
+    let Some(&[rows, columns @ (3 | 6 | 7)]) = sizes.as_deref() else {
         let expected = "a shape (N, 3), (N, 6) or (N, 7)";
         let advice = "indices make one row a voxel; for a dense grid, save numpy.argwhere(grid)";
-        Fault::new("header", start, expected, printable(shape), advice)
-    })?;
+        return Err(Fault::new(
+            "header",
+            start,
+            expected,
+            printable(shape),
+            advice,
+        ));
+    };
     Ok(Layout {
         scalar,
         big_endian,
         fortran,
-        rows,
-        columns,
+        rows: rows as u64,
+        columns: columns as u64,
         data: start + text.len() as u64,
     })
-}
-
-/// The text after a key and its colon in a Python dictionary.
-fn value<'t>(text: &'t [u8], key: &[u8]) -> Option<&'t [u8]> {
-    let at = text.windows(key.len()).position(|window| window == key)?;
-    let rest = text[at + key.len()..].trim_ascii_start();
-    Some(rest.strip_prefix(b":")?.trim_ascii_start())
 }
 
 fn element_type(descr: &[u8]) -> Option<(Scalar, bool)> {
@@ -223,27 +217,5 @@ fn element_type(descr: &[u8]) -> Option<(Scalar, bool)> {
     else {
         return None;
     };
-    let scalar = match [*kind, *width] {
-        [b'i', b'1'] => Scalar::I8,
-        [b'i', b'2'] => Scalar::I16,
-        [b'i', b'4'] => Scalar::I32,
-        [b'i', b'8'] => Scalar::I64,
-        [b'u', b'1'] => Scalar::U8,
-        [b'u', b'2'] => Scalar::U16,
-        [b'u', b'4'] => Scalar::U32,
-        [b'u', b'8'] => Scalar::U64,
-        [b'f', b'4'] => Scalar::F32,
-        [b'f', b'8'] => Scalar::F64,
-        _ => return None,
-    };
-    Some((scalar, *order == b'>'))
-}
-
-fn rows_and_columns(shape: &[u8]) -> Option<(u64, u64)> {
-    let inside = shape.strip_prefix(b"(")?;
-    let end = inside.iter().position(|b| *b == b')')?;
-    let text = std::str::from_utf8(&inside[..end]).ok()?;
-    let (rows, columns) = text.split_once(',')?;
-    let columns = columns.trim().trim_end_matches(',');
-    Some((rows.trim().parse().ok()?, columns.trim().parse().ok()?))
+    Some((Scalar::of(*kind, *width)?, *order == b'>'))
 }

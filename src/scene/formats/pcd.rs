@@ -5,12 +5,12 @@ use glam::DVec3;
 use super::cloud::Cloud;
 use super::xyz::MAX_LINE;
 use crate::graph::KnownNormals;
+use crate::scene::DEFAULT_COLOR;
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem, printable};
 use crate::scene::input::Input;
 use crate::scene::numbers::{Number, Scalar};
 use crate::scene::ply::Source;
-use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
 const AGAIN: &str = "the file is damaged or cut short; save or copy it again";
 const MAX_POINT: usize = 1 << 16;
@@ -32,11 +32,7 @@ struct Header {
     is_text: bool,
 }
 
-pub(super) fn read(
-    input: &mut Input<'_>,
-    options: &ReadOptions,
-    emitter: &mut Emitter<'_>,
-) -> Result<SceneInfo, Problem> {
+pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(), Problem> {
     let mut source = Source::new(&mut input.reader);
     let mut header = read_header(&mut source)?;
     let find = |name: &str| header.fields.iter().position(|f| f.name == name.as_bytes());
@@ -54,7 +50,7 @@ pub(super) fn read(
         // Bits that are no number would change on their way through one.
         header.fields[at].scalar = Scalar::U32;
     }
-    let (mut cloud, mut known) = (Cloud::new(options), KnownNormals::default());
+    let (mut cloud, mut known) = (Cloud::new(emitter.options), KnownNormals::default());
     let (mut line, mut values) = (Vec::new(), Vec::new());
     for point in 0..header.points {
         let begin = source.offset;
@@ -93,13 +89,7 @@ pub(super) fn read(
         let position = positions.map(|at| values[at]);
         cloud.point(position, color, normal, |_| part(), emitter)?;
     }
-    let mut info = SceneInfo {
-        has_colors: color.is_some(),
-        has_normals: normals.is_some(),
-        ..SceneInfo::default()
-    };
-    cloud.finish(&mut info)?;
-    Ok(info)
+    cloud.finish(&mut emitter.info)
 }
 
 /// Red, green and blue in the bits of one number, whose type may be `float`.
@@ -175,7 +165,11 @@ fn read_header<R: std::io::BufRead>(source: &mut Source<'_, R>) -> Result<Header
     }
     let (mut fields, mut numbers, mut bytes) = (Vec::new(), 0, 0);
     for (k, name) in names.into_iter().enumerate() {
-        let scalar = scalar(&types[k], &sizes[k]).ok_or_else(|| {
+        let scalar = match (&types[k][..], &sizes[k][..]) {
+            ([kind @ (b'I' | b'U' | b'F')], &[size]) => Scalar::of(kind.to_ascii_lowercase(), size),
+            _ => None,
+        };
+        let scalar = scalar.ok_or_else(|| {
             let found = printable(&[&types[k][..], b" ", &sizes[k]].concat());
             wrong("the types I and U of 1 to 8 bytes or F of 4 or 8", found)
         })?;
@@ -203,22 +197,6 @@ fn read_header<R: std::io::BufRead>(source: &mut Source<'_, R>) -> Result<Header
         bytes,
         points: points.ok_or_else(missing)?,
         is_text,
-    })
-}
-
-fn scalar(kind: &[u8], size: &[u8]) -> Option<Scalar> {
-    Some(match (kind, size) {
-        (b"I", b"1") => Scalar::I8,
-        (b"I", b"2") => Scalar::I16,
-        (b"I", b"4") => Scalar::I32,
-        (b"I", b"8") => Scalar::I64,
-        (b"U", b"1") => Scalar::U8,
-        (b"U", b"2") => Scalar::U16,
-        (b"U", b"4") => Scalar::U32,
-        (b"U", b"8") => Scalar::U64,
-        (b"F", b"4") => Scalar::F32,
-        (b"F", b"8") => Scalar::F64,
-        _ => return None,
     })
 }
 

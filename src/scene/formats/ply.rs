@@ -4,18 +4,14 @@ use glam::DVec3;
 
 use super::cloud::Cloud;
 use crate::graph::KnownNormals;
+use crate::scene::DEFAULT_COLOR;
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem};
 use crate::scene::input::Input;
 use crate::scene::numbers::Number;
 use crate::scene::ply::PlyFile;
-use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
-pub(super) fn read(
-    input: &mut Input<'_>,
-    options: &ReadOptions,
-    emitter: &mut Emitter<'_>,
-) -> Result<SceneInfo, Problem> {
+pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(), Problem> {
     let mut file = PlyFile::open(&mut input.reader)?;
     let Some(vertices) = file.header.element("vertex").cloned() else {
         let advice = "this PLY holds no points; a cloud has an element vertex";
@@ -28,7 +24,7 @@ pub(super) fn read(
         file.skip(element)?;
     }
     let mut known = KnownNormals::default();
-    let mut cloud = Cloud::new(options);
+    let mut cloud = Cloud::new(emitter.options);
     file.rows(&vertices, [None; 2], |row| {
         let part =
             |names: [&str; 3], k: usize| format!("vertex {}, property {}", row.number, names[k]);
@@ -64,11 +60,5 @@ pub(super) fn read(
             emitter,
         )
     })?;
-    let mut info = SceneInfo {
-        has_colors: colors.is_some(),
-        has_normals: normals.is_some(),
-        ..SceneInfo::default()
-    };
-    cloud.finish(&mut info)?;
-    Ok(info)
+    cloud.finish(&mut emitter.info)
 }

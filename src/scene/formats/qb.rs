@@ -7,22 +7,16 @@ use crate::scene::fault::{Fault, Problem};
 use crate::scene::input::Input;
 use crate::scene::numbers::Scalar;
 use crate::scene::ply::Source;
-use crate::scene::{ReadOptions, SceneInfo};
 
 const RUN: u32 = 2;
 const NEXT_SLICE: u32 = 6;
 
-pub(super) fn read(
-    input: &mut Input<'_>,
-    _: &ReadOptions,
-    emitter: &mut Emitter<'_>,
-) -> Result<SceneInfo, Problem> {
+pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(), Problem> {
     let mut reader = Reader {
         source: Source::new(&mut input.reader),
         emitter,
         is_bgra: false,
         is_right_handed: false,
-        voxels: 0,
     };
     reader.number("header")?;
     reader.is_bgra = reader.setting()?;
@@ -34,19 +28,12 @@ pub(super) fn read(
     for number in 0..matrices {
         reader.matrix(number, is_compressed)?;
     }
-    let mut info = SceneInfo {
-        models: matrices,
-        instances: matrices,
-        stored_voxels: reader.voxels,
-        has_colors: true,
-        ..SceneInfo::default()
-    };
     let more = input.length.saturating_sub(reader.source.offset);
     if more > 0 {
         let warning = format!("{more} bytes after the last matrix were not read");
-        info.warnings.push(warning);
+        emitter.info.warnings.push(warning);
     }
-    Ok(info)
+    Ok(())
 }
 
 struct Matrix {
@@ -61,7 +48,6 @@ struct Reader<'s, 'e, R> {
     emitter: &'s mut Emitter<'e>,
     is_bgra: bool,
     is_right_handed: bool,
-    voxels: u64,
 }
 
 impl<R: BufRead> Reader<'_, '_, R> {
@@ -167,7 +153,6 @@ impl<R: BufRead> Reader<'_, '_, R> {
             ];
             self.emitter
                 .voxel(index, color, None, || (matrix.part.clone(), begin))?;
-            self.voxels += 1;
         }
         Ok(())
     }

@@ -1,22 +1,18 @@
 //! Points in text, one per line: `x y z`, then colours or other columns.
 
 use super::cloud::Cloud;
+use crate::scene::DEFAULT_COLOR;
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem, printable};
 use crate::scene::input::Input;
 use crate::scene::numbers::Number;
 use crate::scene::ply::Source;
-use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
 pub(super) const MAX_LINE: usize = 1 << 12;
 
-pub(super) fn read(
-    input: &mut Input<'_>,
-    options: &ReadOptions,
-    emitter: &mut Emitter<'_>,
-) -> Result<SceneInfo, Problem> {
+pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(), Problem> {
     let mut source = Source::new(&mut input.reader);
-    let mut cloud = Cloud::new(options);
+    let mut cloud = Cloud::new(emitter.options);
     let mut line = Vec::new();
     let mut numbers = Vec::new();
     // Columns, and the first one of the colours.
@@ -59,17 +55,12 @@ pub(super) fn read(
         let position = [numbers[0], numbers[1], numbers[2]];
         cloud.point(position, color, None, |_| part(), emitter)?;
     }
-    let mut info = SceneInfo {
-        has_colors: matches!(layout, Some((_, Some(_)))),
-        ..SceneInfo::default()
-    };
     if let Some((columns @ 4.., None)) = layout {
-        info.warnings.push(format!(
+        emitter.info.warnings.push(format!(
             "columns 4 to {columns} are not drawn: colours are three whole numbers from 0 to 255"
         ));
     }
-    cloud.finish(&mut info)?;
-    Ok(info)
+    cloud.finish(&mut emitter.info)
 }
 
 /// The words of a line, or `None` of a comment, the names of columns, or a blank line.

@@ -1,6 +1,7 @@
 //! A perfect maze.
 
 use super::list::Settings;
+use super::shapes::rows;
 use super::{gradient, hash, palette};
 use crate::graph::{Progress, Voxel};
 
@@ -9,29 +10,16 @@ use crate::graph::{Progress, Voxel};
 pub(super) fn voxels(settings: &Settings, sink: &mut dyn FnMut(Voxel), progress: &dyn Progress) {
     let side = (1i32 << settings.depth) - 1;
     let top = ((side + 1) / 16).max(2);
-    progress.begin("generating maze", top as u64 + 1);
     let open = plan(settings.depth, settings.seed);
-    for z in 0..=top {
-        for y in 0..side {
-            for x in 0..side {
-                let index = [x, y, z];
-                let color = if z == 0 {
-                    palette(2)
-                } else if open[(y * side + x) as usize] {
-                    continue;
-                } else {
-                    gradient(index, side)
-                };
-                sink(Voxel {
-                    index,
-                    color,
-                    normal: None,
-                });
+    rows("maze", [side, top + 1], sink, progress, |y, z, put| {
+        for x in 0..side {
+            if z == 0 {
+                put(x, palette(2));
+            } else if !open[(y * side + x) as usize] {
+                put(x, gradient([x, y, z], side));
             }
         }
-        progress.advance(1);
-    }
-    progress.end();
+    });
 }
 
 fn plan(depth: u32, seed: u32) -> Vec<bool> {

@@ -12,15 +12,15 @@ const SPACES: i32 = 8;
 type Sink<'s> = &'s mut dyn FnMut(Voxel);
 
 /// Passes on the voxels of each row `(y, z)`, which `row` finds: x and colour of each.
-fn rows(
+pub(super) fn rows(
     name: &str,
-    side: i32,
+    [side, height]: [i32; 2],
     sink: Sink<'_>,
     progress: &dyn Progress,
     mut row: impl FnMut(i32, i32, &mut dyn FnMut(i32, [u8; 3])),
 ) {
-    progress.begin(&format!("generating {name}"), side as u64);
-    for z in 0..side {
+    progress.begin(&format!("generating {name}"), height as u64);
+    for z in 0..height {
         for y in 0..side {
             row(y, z, &mut |x, color| {
                 sink(Voxel {
@@ -38,7 +38,7 @@ fn rows(
 pub(super) fn checker(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress) {
     let side = 1i32 << settings.depth;
     let block_log2 = settings.depth.saturating_sub(3);
-    rows("checker", side, sink, progress, |y, z, put| {
+    rows("checker", [side; 2], sink, progress, |y, z, put| {
         for x in ((y + z) & 1..side).step_by(2) {
             let block = (x >> block_log2) + (y >> block_log2) + (z >> block_log2);
             put(x, palette(if block & 1 == 0 { 2 } else { 5 }));
@@ -57,7 +57,7 @@ pub(super) fn menger(settings: &Settings, sink: Sink<'_>, progress: &dyn Progres
         .collect();
     // The reference's y is up, which is our z: its green.
     let shade = |c: i32| (c * 255 / side) as u8;
-    rows("menger", side, sink, progress, |y, z, put| {
+    rows("menger", [side; 2], sink, progress, |y, z, put| {
         let (in_z, in_y) = (ones[z as usize], ones[y as usize]);
         for x in 0..if in_z & in_y == 0 { side } else { 0 } {
             if ones[x as usize] & (in_y | in_z) == 0 {
@@ -71,7 +71,7 @@ pub(super) fn random(settings: &Settings, sink: Sink<'_>, progress: &dyn Progres
     let side = 1i32 << settings.depth;
     // Of 2^32 hash values, those below are filled; all at 100 percent.
     let filled_below = (u64::from(settings.density) << 32) / 100;
-    rows("random", side, sink, progress, |y, z, put| {
+    rows("random", [side; 2], sink, progress, |y, z, put| {
         for x in 0..side {
             let h = hash((x | y << 10) as u32, z as u32, settings.seed);
             if u64::from(h) < filled_below {
@@ -95,7 +95,7 @@ fn half_chord(side: i32, y: i32, z: i32) -> i32 {
 
 pub(super) fn sphere(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress) {
     let side = 1i32 << settings.depth;
-    rows("sphere", side, sink, progress, |y, z, put| {
+    rows("sphere", [side; 2], sink, progress, |y, z, put| {
         let half = half_chord(side, y, z);
         for x in side / 2 - half..side / 2 + half {
             put(x, gradient([x, y, z], side));
@@ -107,7 +107,7 @@ pub(super) fn sphere(settings: &Settings, sink: Sink<'_>, progress: &dyn Progres
 pub(super) fn shell(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress) {
     let side = 1i32 << settings.depth;
     let middle = side / 2;
-    rows("shell", side, sink, progress, |y, z, put| {
+    rows("shell", [side; 2], sink, progress, |y, z, put| {
         let outer = half_chord(side, y, z);
         let inner = (-1..=1)
             .flat_map(|dz| (-1..=1).map(move |dy| half_chord(side, y + dy, z + dz)))
@@ -127,7 +127,7 @@ pub(super) fn truss(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress
     for i in 0..=CELLS {
         on_lattice[((side - 1) * i / CELLS) as usize] = true;
     }
-    rows("truss", side, sink, progress, |y, z, put| {
+    rows("truss", [side; 2], sink, progress, |y, z, put| {
         let (at_z, at_y) = (on_lattice[z as usize], on_lattice[y as usize]);
         for x in 0..if at_z || at_y { side } else { 0 } {
             let color = match (on_lattice[x as usize], at_y, at_z) {

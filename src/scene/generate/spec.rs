@@ -1,7 +1,5 @@
 //! Specifications of generated scenes, such as `gen:terrain,depth=10,seed=1`.
 
-use std::fmt;
-
 use super::list::{GENERATORS, Generator, Settings, Shape};
 use crate::graph::{Graph, Progress, Voxel};
 
@@ -12,12 +10,6 @@ pub const PREFIX: &str = "gen:";
 pub struct Spec {
     generator: &'static Generator,
     settings: Settings,
-}
-
-impl PartialEq for Spec {
-    fn eq(&self, other: &Self) -> bool {
-        self.generator.name == other.generator.name && self.settings == other.settings
-    }
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -78,14 +70,6 @@ impl Spec {
         })
     }
 
-    pub fn generator(&self) -> &'static Generator {
-        self.generator
-    }
-
-    pub fn settings(&self) -> Settings {
-        self.settings
-    }
-
     /// A lower bound of the scene's voxels: 0 if a better one takes long to compute.
     pub fn least_voxels(&self) -> u64 {
         let power = |base: u64| base.saturating_pow(self.settings.depth);
@@ -125,39 +109,21 @@ impl Spec {
     }
 }
 
-impl fmt::Display for Spec {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{PREFIX}{}", self.generator.name)?;
-        let mut settings = self.settings;
-        for range in self.generator.keys {
-            write!(f, ",{}={}", range.key, settings.of(range.key))?;
-        }
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_spec_prints_canonically_and_reads_back() {
-        for (text, canonical) in [
-            ("gen:terrain", "gen:terrain,depth=10,seed=1"),
-            (
-                "gen:terrain,seed=7, depth=12",
-                "gen:terrain,depth=12,seed=7",
-            ),
-            ("gen:random,seed=2", "gen:random,depth=6,density=10,seed=2"),
-        ] {
-            assert_eq!(Spec::parse(text).unwrap().to_string(), canonical);
-            assert_eq!(Spec::parse(canonical).unwrap().to_string(), canonical);
-        }
-        for generator in GENERATORS {
-            let defaults = Spec::parse(&format!("gen:{}", generator.name)).unwrap();
-            let again = Spec::parse(&defaults.to_string()).unwrap();
-            assert_eq!(again.settings, defaults.settings);
-        }
+    fn settings_are_those_given_or_defaults() {
+        let settings = |text| Spec::parse(text).unwrap().settings;
+        let of = |depth, seed, density| Settings {
+            depth,
+            seed,
+            density,
+        };
+        assert_eq!(settings("gen:terrain"), of(10, 1, 0));
+        assert_eq!(settings("gen:terrain,seed=7, depth=12"), of(12, 7, 0));
+        assert_eq!(settings("gen:random,seed=2"), of(6, 2, 10));
     }
 
     #[test]

@@ -16,14 +16,9 @@ pub fn number_of(variable: &str, usual: u32) -> u32 {
     std::env::var(variable).map_or(usual, |n| n.parse().expect("a number"))
 }
 
-/// The factor `SHIFTVOX_CASES` of the numbers of cases.
-pub fn times() -> u32 {
-    number_of("SHIFTVOX_CASES", 1)
-}
-
-/// New cases in every run.
+/// New cases in every run, as many times as `SHIFTVOX_CASES` says.
 pub fn cases(usual: u32) -> ProptestConfig {
-    ProptestConfig::with_cases(usual * times())
+    ProptestConfig::with_cases(usual * number_of("SHIFTVOX_CASES", 1))
 }
 
 /// A graph from each node's children by octant; a node without any is a leaf.

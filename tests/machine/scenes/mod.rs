@@ -5,41 +5,22 @@
 use std::path::Path;
 
 use glam::DVec3;
-use shiftvox::graph::{BuildOptions, Builder, Graph, Normals, Silent};
+use shiftvox::graph::{Graph, Silent};
 use shiftvox::project::Camera;
-use shiftvox::scene::generate::Spec;
-use shiftvox::scene::{ReadOptions, read_voxels};
+use shiftvox::scene::{NoMeshes, OpenOptions, Source, open_source};
 use shiftvox::split_mix::SplitMix;
-
-pub fn graph_of_spec(spec: &str) -> Graph {
-    let parsed = Spec::parse(spec).expect(spec);
-    parsed.linked().unwrap_or_else(|| {
-        let mut builder = builder();
-        parsed.voxels(&mut |voxel| builder.push(voxel), &Silent);
-        builder.finish(([0.0; 3], 1.0), &Silent).expect(spec)
-    })
-}
 
 /// The graph of a generator, or of a file of `tests/data`.
 pub fn graph_of(name: &str) -> Graph {
-    if name.starts_with("gen:") {
-        return graph_of_spec(name);
-    }
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data")
-        .join(name);
-    let mut builder = builder();
-    let mut push = |voxel| builder.push(voxel);
-    let read = read_voxels(&path, &ReadOptions::default(), &mut push, &Silent);
-    read.expect(name);
-    builder.finish(([0.0; 3], 1.0), &Silent).expect(name)
-}
-
-/// Without normals, which no engine reads.
-fn builder() -> Builder {
-    Builder::new(BuildOptions {
-        normals: Normals::None,
-    })
+    let source = match Source::is_generated(name) {
+        true => Source::Generated(name.to_owned()),
+        false => {
+            let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+            Source::find(data.join(name)).expect(name)
+        }
+    };
+    let opened = open_source(source, &OpenOptions::default(), &NoMeshes, &Silent);
+    opened.expect(name).graph
 }
 
 /// Lowest corner and side of a graph's cube, world units.

@@ -11,12 +11,13 @@ pub(super) use args::ModelArgs;
 #[cfg(feature = "view")]
 pub(super) use brief::brief;
 
-use hwmodel::cycles::{Hardware, Progress as Ticks, RequestLog};
+use hwmodel::cycles::{Hardware, Observer, OuterRequest, write_ramulator};
 
 use super::console::Console;
 use super::error::CliError;
 use super::experiment::subjects;
 use shiftvox::frame::Frame;
+use shiftvox::graph::Progress;
 use shiftvox::machine::Simulated;
 use shiftvox::project::FrameSetup;
 use shiftvox_lab::bench::Subject;
@@ -117,18 +118,39 @@ fn simulate(
     console: &Console,
 ) -> Result<(Frame, Simulated), CliError> {
     let (view, overflow) = (subject.graph.view(), args.rules.overflow());
-    let mut reported = 0;
     let trace = args.files.export_ramulator.as_ref();
-    let ticks = Ticks(|_, records: u64| {
-        console.progress().advance(records.saturating_sub(reported));
-        reported = records;
-    });
-    let mut watched = (RequestLog::new(trace.is_some()), ticks);
-    let drawn = frame::simulate(&view, setup, hardware, overflow, &mut watched)?;
-    if let Some(path) = trace {
+    let mut watch = Watch {
+        progress: console.progress(),
+        reported: 0,
+        requests: trace.map(|_| Vec::new()),
+    };
+    let drawn = frame::simulate(&view, setup, hardware, overflow, &mut watch)?;
+    if let (Some(path), Some(requests)) = (trace, watch.requests) {
         let mut text = Vec::new();
-        watched.0.write_ramulator(&mut text)?;
+        write_ramulator(requests, &mut text)?;
         console.write(path, text, args.export.force)?;
     }
     Ok(drawn)
+}
+
+struct Watch<'c> {
+    progress: &'c dyn Progress,
+    reported: u64,
+    /// Those to outer memory, if they are wanted.
+    requests: Option<Vec<OuterRequest>>,
+}
+
+impl Observer for Watch<'_> {
+    fn watches_requests(&self) -> bool {
+        self.requests.is_some()
+    }
+
+    fn requests(&mut self, requests: Vec<OuterRequest>) {
+        self.requests = Some(requests);
+    }
+
+    fn progress(&mut self, _: u64, records: u64) {
+        self.progress.advance(records.saturating_sub(self.reported));
+        self.reported = records;
+    }
 }

@@ -199,7 +199,7 @@ fn colours_are_those_of_the_plain_rule() {
             );
             let mut fast = Fast::new(FastOptions::default(), Box::new(Machine::default()));
             let mut frame = Frame::new(setup.width, setup.height, false);
-            fast.draw(&graph.view(), &setup, &mut frame).unwrap();
+            fast.render(&graph.view(), &setup, &mut frame).unwrap();
             let mut nodes = frame.clone();
             nodes.voxel.clear();
             for (shading, background) in [

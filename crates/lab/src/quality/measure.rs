@@ -377,14 +377,15 @@ mod tests {
     use glam::DVec3;
     use shiftvox::machine::Machine;
     use shiftvox::project::SetupOptions;
-    use shiftvox_mesh::open::{OpenOptions, open};
+    use shiftvox::scene::{NoMeshes, OpenOptions, Source, open_source};
 
     use crate::bench::MakeEngine;
     use crate::quality::voxel_method;
 
     #[test]
     fn methods_are_refused_and_experiments_fail() {
-        let opened = open("gen:sphere,depth=3", &OpenOptions::default(), &Silent);
+        let source = Source::Generated("gen:sphere,depth=3".to_owned());
+        let opened = open_source(source, &OpenOptions::default(), &NoMeshes, &Silent);
         let graph = opened.unwrap().graph;
         let too_deep = Graph {
             depth: 99,

@@ -9,12 +9,13 @@ use crate::measure::CoverageError;
 use crate::model::frame::reference;
 use shiftvox::graph::{Graph, Silent};
 use shiftvox::project::{Camera, FrameSetup, SetupOptions};
-use shiftvox_mesh::open::{OpenOptions, open};
+use shiftvox::scene::{NoMeshes, OpenOptions, Source, open_source};
 
 /// Eye and target in sides of the object's cube.
 fn view(spec: &str, eye: [f64; 3], target: [f64; 3], side: u32) -> (Graph, FrameSetup) {
-    let spec = format!("gen:{spec}");
-    let graph = open(&spec, &OpenOptions::default(), &Silent).unwrap().graph;
+    let source = Source::Generated(format!("gen:{spec}"));
+    let opened = open_source(source, &OpenOptions::default(), &NoMeshes, &Silent);
+    let graph = opened.unwrap().graph;
     let low = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
     let in_world = |at: [f64; 3]| low + DVec3::from_array(at) * f64::from(1u32 << graph.depth);
     let camera = Camera::looking(in_world(eye), in_world(target), 60.0, (side, side));

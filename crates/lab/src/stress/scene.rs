@@ -3,30 +3,21 @@
 use std::fmt;
 use std::str::FromStr;
 
-use shiftvox::graph::{
-    BuildOptions, Builder, Graph, LinkedGraph, MAX_DEPTH, Normals, Silent, Voxel,
-};
+use shiftvox::graph::{Builder, Graph, LinkedGraph, MAX_DEPTH, Silent, Voxel};
 use shiftvox::scene::generate::Spec;
 use shiftvox::split_mix::SplitMix;
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum StressScene {
-    Generated(Spec),
+    /// A specification.
+    Generated(String),
     /// A plane through the cube's middle: `plane:depth,a,b,c` with its normal, c not 0. No line passes through, not even at
     /// corners.
-    Plane {
-        depth: u32,
-        normal: [i64; 3],
-    },
+    Plane { depth: u32, normal: [i64; 3] },
     /// A full cube, one node that is all of its own children: `solid:depth`.
-    Solid {
-        depth: u32,
-    },
+    Solid { depth: u32 },
     /// A random graph whose nodes have any nodes as children: `cyclic:depth,seed`.
-    Cyclic {
-        depth: u32,
-        seed: u64,
-    },
+    Cyclic { depth: u32, seed: u64 },
 }
 
 const MOST_PLANE_DEPTH: u32 = 10;
@@ -34,7 +25,7 @@ const MOST_PLANE_DEPTH: u32 = 10;
 impl fmt::Display for StressScene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Generated(spec) => spec.fmt(f),
+            Self::Generated(spec) => f.write_str(spec),
             Self::Plane {
                 depth,
                 normal: [a, b, c],
@@ -51,9 +42,8 @@ impl FromStr for StressScene {
     fn from_str(text: &str) -> Result<Self, String> {
         let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
         if kind == "gen" {
-            return Spec::parse(text)
-                .map(Self::Generated)
-                .map_err(|e| e.to_string());
+            Spec::parse(text).map_err(|e| e.to_string())?;
+            return Ok(Self::Generated(text.to_owned()));
         }
         let wrong = || {
             format!(
@@ -101,7 +91,9 @@ impl StressScene {
     pub(super) fn is_closed(&self) -> bool {
         match self {
             Self::Plane { .. } | Self::Solid { .. } => true,
-            Self::Generated(spec) => matches!(spec.generator().name, "sphere" | "shell"),
+            Self::Generated(spec) => ["gen:sphere", "gen:shell"]
+                .iter()
+                .any(|of| spec.starts_with(of)),
             Self::Cyclic { .. } => false,
         }
     }
@@ -109,14 +101,17 @@ impl StressScene {
     /// Makes it. Fails in words, where there is nothing to draw or too much.
     pub(super) fn graph(&self) -> Result<Graph, String> {
         match self {
-            Self::Generated(spec) => match spec.linked() {
-                Some(graph) => Ok(graph),
-                None => {
-                    let mut at = Vec::new();
-                    spec.voxels(&mut |voxel| at.push(voxel.index), &Silent);
-                    built(at)
+            Self::Generated(spec) => {
+                let spec = Spec::parse(spec).map_err(|e| e.to_string())?;
+                match spec.linked() {
+                    Some(graph) => Ok(graph),
+                    None => {
+                        let mut at = Vec::new();
+                        spec.voxels(&mut |voxel| at.push(voxel.index), &Silent);
+                        built(at)
+                    }
                 }
-            },
+            }
             Self::Plane { depth, normal } => built(plane(*depth, *normal)),
             Self::Solid { depth } => {
                 let mut graph = LinkedGraph::new(*depth);
@@ -129,9 +124,7 @@ impl StressScene {
 }
 
 fn built(voxels: Vec<[i32; 3]>) -> Result<Graph, String> {
-    let mut builder = Builder::new(BuildOptions {
-        normals: Normals::None,
-    });
+    let mut builder = Builder::default();
     for index in voxels {
         builder.push(Voxel {
             index,

@@ -78,7 +78,7 @@ fn close(a: f64, b: f64) {
 /// Of a design with one context. Its units and memories have sizes of the tables.
 #[test]
 fn figures_of_a_terrain() {
-    let graph = graph_of_spec("gen:terrain,depth=6");
+    let graph = graph_of("gen:terrain,depth=6");
     let camera = camera_at(CameraPlace::Outside, &graph, (64, 64), &mut Dice::new(11));
     let options = SetupOptions {
         bits: 32,

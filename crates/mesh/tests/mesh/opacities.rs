@@ -1,6 +1,6 @@
 //! Opacities of a mesh's voxels at every level: a thin bar keeps its width.
 
-use shiftvox::graph::{BuildOptions, Builder, Graph, Silent, sixteenths};
+use shiftvox::graph::{Builder, Graph, Silent, sixteenths};
 use shiftvox_mesh::Mesh;
 use shiftvox_mesh::voxelize::{Grid, opacities, voxelize};
 use xxhash_rust::xxh3::xxh3_64;
@@ -11,7 +11,7 @@ use super::voxels::random;
 /// The graph of a mesh's voxels, with opacities.
 pub(super) fn graph_of(mesh: &Mesh, depth: u32) -> (Graph, Grid) {
     let grid = Grid::around(mesh, depth).unwrap();
-    let mut builder = Builder::new(BuildOptions::default());
+    let mut builder = Builder::default();
     let mut push = |voxel| builder.push(voxel);
     voxelize(mesh, &grid, true, &mut push, &Silent);
     let mut graph = builder.finish(grid.placement(), &Silent).unwrap();

@@ -11,24 +11,17 @@ use nbt::{Cursor, Value, content, fault};
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem};
 use crate::scene::input::Input;
-use crate::scene::{ReadOptions, SceneInfo};
 
 /// Most block states of a palette. Minecraft has some 30,000.
 const MOST_STATES: i64 = 1 << 20;
 
-pub(super) fn read(
-    input: &mut Input<'_>,
-    _: &ReadOptions,
-    emitter: &mut Emitter<'_>,
-) -> Result<SceneInfo, Problem> {
+pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(), Problem> {
     let bytes = content(input)?;
     let root = Cursor::root(&bytes)?;
     let mut scene = Scene {
         emitter,
-        info: SceneInfo::default(),
         unknown: BTreeSet::new(),
     };
-    scene.info.has_colors = true;
     if let Some(Value::Compound(regions)) = root.get("Regions")? {
         regions.entries(|_, region| match region {
             Value::Compound(region) => scene.region(region),
@@ -46,13 +39,17 @@ pub(super) fn read(
         };
         scene.schematic(schematic)?;
     }
-    scene.tell();
-    Ok(scene.info)
+    if let Some(first) = scene.unknown.first() {
+        let count = scene.unknown.len();
+        emitter.info.warnings.push(format!(
+            "kinds of blocks without a colour of their own, which got the default one: {count}, such as {first:?}"
+        ));
+    }
+    Ok(())
 }
 
 struct Scene<'s, 'e> {
     emitter: &'s mut Emitter<'e>,
-    info: SceneInfo,
     /// Names of blocks without a colour of their own.
     unknown: BTreeSet<String>,
 }
@@ -190,8 +187,6 @@ impl Scene<'_, '_> {
         at: usize,
         mut number: impl FnMut(u64) -> Option<u64>,
     ) -> Result<(), Problem> {
-        self.info.models += 1;
-        self.info.instances += 1;
         let count = width
             .checked_mul(height)
             .and_then(|n| n.checked_mul(length));
@@ -208,7 +203,6 @@ impl Scene<'_, '_> {
                 let index = [east, -1 - south, low[1] + y as i64];
                 self.emitter
                     .voxel(index, color, None, || ("blocks".to_owned(), at as u64))?;
-                self.info.stored_voxels += 1;
             }
         }
         Ok(())
@@ -222,14 +216,5 @@ impl Scene<'_, '_> {
             self.unknown.insert(name.to_owned());
             Block::Solid(crate::scene::DEFAULT_COLOR)
         })
-    }
-
-    fn tell(&mut self) {
-        if let Some(first) = self.unknown.first() {
-            let count = self.unknown.len();
-            self.info.warnings.push(format!(
-                "kinds of blocks without a colour of their own, which got the default one: {count}, such as {first:?}"
-            ));
-        }
     }
 }

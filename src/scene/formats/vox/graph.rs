@@ -8,7 +8,6 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use super::chunk::{Chunk, Dict, Fields};
 use super::transform::Transform;
 use super::{AGAIN, DAMAGED};
-use crate::scene::SceneInfo;
 use crate::scene::fault::{Fault, Problem};
 
 /// Most visits of nodes and models, which the file's length does not bound.
@@ -50,10 +49,6 @@ enum Step<'g> {
 impl SceneGraph {
     pub(super) fn is_empty(&self) -> bool {
         self.nodes.is_empty()
-    }
-
-    pub(super) fn len(&self) -> usize {
-        self.nodes.len()
     }
 
     pub(super) fn add_layer(&mut self, chunk: &Chunk<'_>) -> Result<(), Box<Fault>> {
@@ -117,12 +112,13 @@ impl SceneGraph {
     }
 
     /// All different placements of models that are not hidden. Of equal ones the last is kept, because of voxels at one
-    /// index the last one counts.
+    /// index the last one counts. Also returns the number of those that are hidden.
     pub(super) fn placements(
         &self,
         models: usize,
-        info: &mut SceneInfo,
-    ) -> Result<Vec<(u32, Transform)>, Problem> {
+        warnings: &mut Vec<String>,
+    ) -> Result<(Vec<(u32, Transform)>, u32), Problem> {
+        let (mut shown, mut hidden_ones) = (0, 0);
         let mut is_placed = vec![false; models];
         let mut last: HashMap<(u32, Transform), u32> = HashMap::new();
         self.walk(|node, model, transform, hidden| {
@@ -134,28 +130,29 @@ impl SceneGraph {
             };
             *is_placed = true;
             if hidden {
-                info.hidden_instances += 1;
+                hidden_ones += 1;
             } else {
-                last.insert((model, transform), info.instances);
-                info.instances += 1;
+                last.insert((model, transform), shown);
+                shown += 1;
             }
             Ok(())
         })?;
         let missing = is_placed.iter().filter(|placed| !**placed).count();
         if missing > 0 {
-            info.warnings.push(format!(
+            warnings.push(format!(
                 "{missing} of {models} models are not placed by the scene graph and were left out"
             ));
         }
-        let repeated = info.instances as usize - last.len();
+        let repeated = shown as usize - last.len();
         if repeated > 0 {
-            info.warnings.push(format!(
+            warnings.push(format!(
                 "{repeated} placements put a model where it is already, and were left out"
             ));
         }
         let mut placed: Vec<_> = last.into_iter().collect();
         placed.sort_unstable_by_key(|&(_, order)| order);
-        Ok(placed.into_iter().map(|(placement, _)| placement).collect())
+        let placed = placed.into_iter().map(|(placement, _)| placement);
+        Ok((placed.collect(), hidden_ones))
     }
 
     fn walk<'g>(

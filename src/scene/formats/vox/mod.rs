@@ -11,10 +11,10 @@ mod write;
 
 pub use write::{VoxWriter, VoxWritten};
 
+use crate::scene::SceneInfo;
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem};
 use crate::scene::input::Input;
-use crate::scene::{ReadOptions, SceneInfo};
 use chunk::{Chunk, Fields};
 use graph::SceneGraph;
 use palette::Palette;
@@ -38,32 +38,25 @@ struct Contents<'a> {
     palette: Palette,
 }
 
-pub(super) fn read(
-    input: &mut Input<'_>,
-    _: &ReadOptions,
-    emitter: &mut Emitter<'_>,
-) -> Result<SceneInfo, Problem> {
-    let mut info = SceneInfo::default();
+pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(), Problem> {
     let bytes = input.bytes().map_err(Problem::Read)?;
-    let contents = read_contents(&bytes, &mut info)?;
-    survey(&contents, &mut info);
-    let models = contents.models.iter();
+    let contents = read_contents(&bytes, &mut emitter.info)?;
+    let warnings = &mut emitter.info.warnings;
+    survey(&contents, warnings);
+    let (models, mut hidden) = (&contents.models, 0);
     let placed: Vec<(&Model<'_>, Option<Transform>)> = if contents.graph.is_empty() {
-        info.instances = info.models;
-        if info.models > 1 {
-            info.warnings.push(format!(
+        if models.len() > 1 {
+            warnings.push(format!(
                 "the file has {} models and no scene graph; all were read into the same space, as nothing says where they go",
-                info.models
+                models.len()
             ));
         }
-        models.map(|model| (model, None)).collect()
+        models.iter().map(|model| (model, None)).collect()
     } else {
-        let placements = contents
-            .graph
-            .placements(contents.models.len(), &mut info)?;
-        let of = |(number, transform): (u32, Transform)| {
-            (&contents.models[number as usize], Some(transform))
-        };
+        let placements;
+        (placements, hidden) = contents.graph.placements(models.len(), warnings)?;
+        let of =
+            |(number, transform): (u32, Transform)| (&models[number as usize], Some(transform));
         placements.into_iter().map(of).collect()
     };
     // Places are fewer than 2^20, and a model has fewer voxels than 2^30.
@@ -71,12 +64,11 @@ pub(super) fn read(
     for (model, transform) in placed {
         place(model, transform, &contents.palette, emitter)?;
     }
-    if info.hidden_instances > 0 {
-        let hidden = info.hidden_instances;
-        info.warnings
-            .push(format!("{hidden} hidden models were left out"));
+    if hidden > 0 {
+        let warning = format!("{hidden} hidden models were left out");
+        emitter.info.warnings.push(warning);
     }
-    Ok(info)
+    Ok(())
 }
 
 fn read_contents<'a>(bytes: &'a [u8], info: &mut SceneInfo) -> Result<Contents<'a>, Problem> {
@@ -146,34 +138,29 @@ fn lonely_size(chunk: &Chunk<'_>) -> Box<Fault> {
 }
 
 /// Counts voxels, each model once.
-fn survey(contents: &Contents<'_>, info: &mut SceneInfo) {
-    info.models = u32::try_from(contents.models.len()).unwrap_or(u32::MAX);
-    info.nodes = u32::try_from(contents.graph.len()).unwrap_or(u32::MAX);
-    info.has_colors = true;
-    let mut empty = 0u64;
+fn survey(contents: &Contents<'_>, warnings: &mut Vec<String>) {
+    let (mut empty, mut outside) = (0u64, 0u64);
     let mut without_color = false;
     let given = contents.palette.given;
     for model in &contents.models {
-        info.stored_voxels += model.voxels.len() as u64;
         empty += model.voxels.len() as u64 - model.visible;
         for [x, y, z, color] in model.voxels {
             without_color |= given > 0 && usize::from(*color) > given;
-            info.outside_size += u64::from(!is_inside([*x, *y, *z], model.size));
+            outside += u64::from(!is_inside([*x, *y, *z], model.size));
         }
     }
     if empty > 0 {
-        info.warnings.push(format!(
+        warnings.push(format!(
             "{empty} voxels have colour index 0, which means empty, and were left out"
         ));
     }
     if without_color {
-        info.warnings.push(format!(
+        warnings.push(format!(
             "some voxels use colours beyond the palette's {given} entries; MagicaVoxel's default colours were used for them"
         ));
     }
-    if info.outside_size > 0 {
-        let outside = info.outside_size;
-        info.warnings.push(format!(
+    if outside > 0 {
+        warnings.push(format!(
             "{outside} voxels lie outside their model's SIZE and were taken modulo 256, nearest to the middle of SIZE"
         ));
     }

@@ -23,7 +23,6 @@ pub struct VoxWriter {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VoxWritten {
     pub voxels: u64,
-    pub models: u32,
     pub colors_given: usize,
     pub colors_kept: usize,
 }
@@ -57,7 +56,6 @@ impl VoxWriter {
         let (palette, index_of) = quantize::palette(&histogram);
         let written = VoxWritten {
             voxels: histogram.values().sum(),
-            models: count(self.blocks.len())?,
             colors_given: histogram.len(),
             colors_kept: palette.len(),
         };
