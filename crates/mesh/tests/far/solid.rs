@@ -99,16 +99,21 @@ fn spokes(radius: f64) -> Mesh {
     })
 }
 
-/// A flat square, whose voxels have few probes each.
+/// A square, flat or wavy, whose voxels have few probes each.
 #[test]
 fn sheets_have_no_pinholes() {
-    let mesh = shape(|builder| {
-        sheet(builder, [40, 40], 0, |i, j| {
-            DVec3::new(f64::from(i), f64::from(j), 0.0)
+    let views = [(60, DVec3::Z), (60, -DVec3::Z), (40, DVec3::Z)];
+    for (wave, (size, towards)) in [0.0, 2.0]
+        .into_iter()
+        .flat_map(|wave| views.map(|v| (wave, v)))
+    {
+        let mesh = shape(|builder| {
+            sheet(builder, [40, 40], 0, |i, j| {
+                let [x, y] = [i, j].map(f64::from);
+                DVec3::new(x, y, wave * libm::sin(x / 8.0) + wave * y / 8.0)
+            });
         });
-    });
-    let file = file_of(&build(&mesh, &BuildOptions::default(), &Silent).unwrap());
-    for (size, towards) in [(60, DVec3::Z), (60, -DVec3::Z), (40, DVec3::Z)] {
+        let file = file_of(&build(&mesh, &BuildOptions::default(), &Silent).unwrap());
         let view = around(&mesh, towards, 1.5, size);
         let whole = triangles(&mesh, &view, 16, None).coverage;
         let drawn = draw(&file, &view, &ViewOptions::default()).0.coverage;
@@ -116,7 +121,10 @@ fn sheets_have_no_pinholes() {
         let (count, sum) = within.fold((0, 0.0), |(n, sum), (_, drawn)| (n + 1, sum + drawn));
         let mean = sum / count as f32;
         // Voxels of the edge are half empty.
-        assert!(count > 700 && mean > 0.99, "{size}: {mean} of {count}");
+        assert!(
+            count > 700 && mean > 0.99,
+            "{wave} {size}: {mean} of {count}"
+        );
     }
 }
 

@@ -122,10 +122,13 @@ pub(super) struct Layer {
 }
 
 impl Layer {
-    /// Of ends, and of the normals there of the triangles' planes, on the side of the rays' origins. Their sum is normal
-    /// to a rough surface, too.
+    /// Of ends, and of the normals there of the triangles' planes. Their sum is normal to a rough surface, too. A sheet is
+    /// seen from both sides, so each is turned to agree with those before.
     pub(super) fn of(ends: impl Iterator<Item = (DVec3, DVec3)> + Clone) -> Self {
-        let normal = ends.clone().map(|(_, normal)| normal).sum::<DVec3>();
+        let mut normal = DVec3::ZERO;
+        for (_, of_end) in ends.clone() {
+            normal += of_end * if of_end.dot(normal) < 0.0 { -1.0 } else { 1.0 };
+        }
         let normal = normal.normalize_or(DVec3::Z);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (end, _) in ends {
