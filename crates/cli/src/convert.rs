@@ -129,6 +129,13 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     if !is_ending("tvx") && (args.texels.is_some() || args.element.is_some()) {
         return Err(CliError::usage("--texels and --element are for .tvx files"));
     }
+    let mut idle = args.scene.given().filter(|&flag| flag != "mesh-colors");
+    if (is_ending("tvx") || is_ending("far"))
+        && let Some(idle) = idle.next()
+    {
+        let message = format!("--{idle} changes nothing of a .far or .tvx file");
+        return Err(CliError::usage(message).advise("leave it out"));
+    }
     if is_ending("tvx") {
         if args.memory.is_some() || args.has_far_settings() {
             return Err(CliError::usage(

@@ -14,20 +14,20 @@ use crate::load::texture::Textures;
 use crate::material::to_srgb;
 use crate::texture::AlphaMode;
 use crate::{ColorSpace, Material, MeshBuilder};
+use shiftvox::budget;
 
 /// Triangles that a document may always have, besides those that its length justifies.
 const FREE_TRIANGLES: usize = 100_000;
 /// Triangles that a byte of file and buffers justifies: nodes may show a mesh many times.
 const TRIANGLES_A_BYTE: usize = 16;
 
+type Parts<'d> = (Numbers<'d>, Option<Numbers<'d>>, usize);
+
 pub(super) struct Reader<'d> {
     document: &'d Document,
     buffers: &'d Buffers<'d>,
     beside: &'d Beside<'d>,
     most: usize,
-    /// Positions, triangles and primitives so far. Positions count because they take memory, primitives because they take
-    /// time.
-    used: usize,
     skipped_modes: u64,
     morphed: u64,
     skinned: u64,
@@ -51,7 +51,6 @@ impl<'d> Reader<'d> {
             buffers,
             beside,
             most: FREE_TRIANGLES + TRIANGLES_A_BYTE * bytes,
-            used: 0,
             skipped_modes: 0,
             morphed: 0,
             skinned: 0,
@@ -74,6 +73,7 @@ impl<'d> Reader<'d> {
             }
         }
         let shown = self.shown()?;
+        self.check_size(&shown, builder)?;
         for (number, placed) in shown {
             for primitive in &self.mesh(number)?.primitives {
                 self.primitive(number, primitive, placed, builder)?;
@@ -192,12 +192,45 @@ impl<'d> Reader<'d> {
         mesh.ok_or_else(|| broken("mesh", number, "a mesh of this number", "none"))
     }
 
-    fn count(&mut self, more: usize) -> Result<(), Problem> {
-        self.used = self.used.saturating_add(more);
-        match self.used <= self.most {
-            true => Ok(()),
-            false => Err(too_many()),
+    /// Fails if there is too much, before any of it is made.
+    fn check_size(&self, shown: &[(usize, DMat4)], builder: &MeshBuilder) -> Result<(), Problem> {
+        let (mut used, mut bytes) = (0usize, 0u64);
+        for &(mesh, _) in shown {
+            for primitive in &self.mesh(mesh)?.primitives {
+                let parts = self.parts(primitive)?;
+                let [positions, triangles] = parts.map_or([0; 2], |of| [of.0.count, of.2]);
+                // Positions take memory, too. Also a primitive without any takes time.
+                used = used.saturating_add(positions.saturating_add(triangles).saturating_add(1));
+                bytes = bytes.saturating_add(24 * positions as u64 + 16 * triangles as u64);
+                if used > self.most {
+                    return Err(too_many());
+                }
+            }
         }
+        match builder.folder() {
+            Some(_) => Ok(()),
+            None => budget::check("a mesh", bytes).map_err(|short| {
+                too_large("memory for all triangles".to_owned(), short.to_string())
+            }),
+        }
+    }
+
+    /// A primitive's positions, indices and number of triangles; `None` without triangles.
+    fn parts(&self, primitive: &Primitive) -> Result<Option<Parts<'d>>, Problem> {
+        let mode = primitive.mode.unwrap_or(4);
+        if !(4..=6).contains(&mode) {
+            return Ok(None);
+        }
+        let Some(positions) = self.attribute(primitive, "POSITION")? else {
+            return Ok(None);
+        };
+        let indices = primitive.indices.map(|a| self.numbers(a)).transpose()?;
+        let corners = indices.as_ref().map_or(positions.count, |i| i.count);
+        let triangles = match mode {
+            4 => corners / 3,
+            _ => corners.saturating_sub(2),
+        };
+        Ok(Some((positions, indices, triangles)))
     }
 
     /// The places of a primitive's vertices, if its material has a texture, which the builder gets.
@@ -247,23 +280,10 @@ impl<'d> Reader<'d> {
         placed: DMat4,
         builder: &mut MeshBuilder,
     ) -> Result<(), Problem> {
-        self.count(1)?;
-        let mode = primitive.mode.unwrap_or(4);
-        let positions = match mode {
-            4..=6 => self.attribute(primitive, "POSITION")?,
-            _ => None,
-        };
-        let Some(positions) = positions else {
+        let Some((positions, indices, triangles)) = self.parts(primitive)? else {
             self.skipped_modes += 1;
             return Ok(());
         };
-        let indices = primitive.indices.map(|a| self.numbers(a)).transpose()?;
-        let corners = indices.as_ref().map_or(positions.count, |i| i.count);
-        let triangles = match mode {
-            4 => corners / 3,
-            _ => corners.saturating_sub(2),
-        };
-        self.count(positions.count.saturating_add(triangles))?;
         self.morphed += u64::from(!primitive.targets.is_empty());
         let normals = self.attribute(primitive, "NORMAL")?;
         let colors = self.attribute(primitive, "COLOR_0")?;
@@ -299,7 +319,7 @@ impl<'d> Reader<'d> {
         };
         let places = self.places(primitive, material, builder)?;
         for number in 0..triangles {
-            let mut at = match mode {
+            let mut at = match primitive.mode.unwrap_or(4) {
                 4 => [3 * number, 3 * number + 1, 3 * number + 2],
                 5 if number % 2 == 1 => [number + 1, number, number + 2],
                 5 => [number, number + 1, number + 2],
@@ -357,10 +377,11 @@ fn placed(scale: DVec3, turn: DQuat, moved: DVec3) -> DMat4 {
 
 fn too_many() -> Problem {
     let expected = format!("at most {TRIANGLES_A_BYTE} triangles for a byte of the file");
-    let (found, advice) = (
-        "more: they show meshes very often",
-        "export a part of the scene",
-    );
+    too_large(expected, "more: they show meshes very often".to_owned())
+}
+
+fn too_large(expected: String, found: String) -> Problem {
+    let advice = "export a part of the scene";
     Problem::Limit(Fault::new("nodes", Place::Whole, expected, found, advice))
 }
 
