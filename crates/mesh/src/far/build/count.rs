@@ -10,6 +10,8 @@ use crate::far::record::{STEEPNESSES, Shader, steepness};
 pub(super) const FOLLOWED: f64 = 9.0;
 /// Voxels between the ends in a voxel and the planes of its layer.
 const LAYER_MARGIN: f64 = 0.25;
+/// The least length of the mean of a sheet's normals.
+const SHEET: f64 = 0.95;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SurfaceSample {
@@ -122,13 +124,22 @@ pub(super) struct Layer {
 }
 
 impl Layer {
-    /// Of ends, and of the normals there of the triangles' planes. Their sum is normal to a rough surface, too. A sheet is
-    /// seen from both sides, so each is turned to agree with those before.
+    /// Of ends, and of the normals there of the triangles' planes, on the side of the rays' origins. Their sum is normal
+    /// to a rough surface, too. Those of a sheet that is seen from both sides cancel out, unless they are turned to agree.
     pub(super) fn of(ends: impl Iterator<Item = (DVec3, DVec3)> + Clone) -> Self {
-        let mut normal = DVec3::ZERO;
-        for (_, of_end) in ends.clone() {
-            normal += of_end * if of_end.dot(normal) < 0.0 { -1.0 } else { 1.0 };
+        let (mut sum, mut agreeing, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+        for (_, normal) in ends.clone() {
+            sum += normal;
+            agreeing += normal
+                * if normal.dot(agreeing) < 0.0 {
+                    -1.0
+                } else {
+                    1.0
+                };
+            count += 1.0;
         }
+        let is_sheet = agreeing.length() > SHEET * count;
+        let normal = if is_sheet { agreeing } else { sum };
         let normal = normal.normalize_or(DVec3::Z);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (end, _) in ends {

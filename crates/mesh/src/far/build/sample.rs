@@ -140,7 +140,9 @@ impl Target<'_> {
             let fit = fit_shader(&samples, main_normal(&samples));
             let layer = Layer::of(ends.of(place).iter().map(|&shot| {
                 let shot = &shots[shot as usize];
-                (shot.end_point(), triangles.plane(shot.triangle as usize))
+                let normal = triangles.plane(shot.triangle as usize);
+                let is_behind = normal.dot(shot.direction.as_dvec3()) > 0.0;
+                (shot.end_point(), if is_behind { -normal } else { normal })
             }));
             let mut seen = Seen {
                 place: self.grid.place(voxel.number as usize),
