@@ -293,7 +293,7 @@ pub(super) fn frame<'d>(
     shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))
 }
 
-/// The picture's hash, if it is asked for.
+/// The hash of a picture, where one is wanted.
 pub(super) fn hash(shown: &Shown<'_>, is_hashed: bool) -> Result<Option<String>, CliError> {
     let hash = is_hashed.then(|| picture::hash_rows(&shown.buffers));
     Ok(hash.transpose()?)

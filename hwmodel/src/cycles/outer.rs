@@ -214,9 +214,9 @@ impl OuterPort {
 /// Bytes of a request in [`write_ramulator`].
 const BURST_BYTES: u64 = 64;
 
-/// Writes the memory trace that Ramulator reads with `--mode=dram`: a line per request of 64 bytes, in the order in which
-/// the port accepts them, its address in hexadecimal and `R` or `W`. The format has no times. A request of fewer bytes is
-/// a line of its own.
+/// Writes the memory trace that Ramulator reads with `--mode=dram`. A request of 64 bytes is a line, its address in
+/// hexadecimal and `R` or `W`, in the order in which the port accepts them. The format has no times. A request of fewer
+/// bytes is a line of its own.
 pub fn write_ramulator(mut requests: Vec<OuterRequest>, mut to: impl Write) -> io::Result<()> {
     requests.sort_by_key(|request| request.cycle);
     for request in requests {

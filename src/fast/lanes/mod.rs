@@ -4,8 +4,8 @@
 //! Each large step of the traversal runs in [`Isa::vectorize`]. Functions below it that use lanes are
 //! `#[inline(always)]`.
 
-/// Vectors of a set, each a register, with the intrinsics that load and fill it. Those that read no memory stand in
-/// `intrinsics!`, which each set defines.
+/// Vectors of a set, each a register, with the intrinsics that load and fill it. Each set calls the others by its own macro
+/// `intrinsics!`.
 #[allow(unused_macros, reason = "some processors have no vectors")]
 macro_rules! lanes {
     ($($name:ident([$lane:ty; $n:literal] in $register:ty, $load:ident, $splat:ident);)*) => {$(

@@ -112,7 +112,7 @@ pub fn simulate(
     Ok((frame, simulated))
 }
 
-/// The view against which errors are measured, whatever the format of what is measured: 64 bits, the exact rule.
+/// The set-up of the exact picture, which errors are measured against: 64 bits, whatever the measured format.
 pub fn exact_setup(graph: &Graph, camera: &Camera, aa_log2: u32) -> Result<FrameSetup, SetupError> {
     let options = SetupOptions {
         aa_log2,

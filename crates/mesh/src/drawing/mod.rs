@@ -33,7 +33,7 @@ struct Drawn {
 }
 
 impl Drawn {
-    /// A picture without normals and voxels. `node` of what is seen is -1 where nothing is.
+    /// A picture without normals and voxels. `node` gives -1 for [`NOTHING`](crate::raster::NOTHING).
     fn new(
         drawn: RasterPicture,
         node: fn(u32) -> i32,

@@ -34,8 +34,8 @@ pub enum Opacity {
     Six,
 }
 
-/// Bytes of a voxel in each of a node's lists, in the order in which they are stored: three of flat shaders and three of
-/// complex ones, with the three kinds of opacities. Place 3, shader 8 or 30, opacities 0, 2 or 5.
+/// Bytes of a voxel in each list of a node: place 3, shader 8 or 30, opacities 0, 2 or 5. Three lists have flat shaders,
+/// the next three complex ones. Each three have the kinds of opacities in the order of [`OpacityKind`].
 pub const RECORD_BYTES: [usize; 6] = [11, 13, 16, 33, 35, 38];
 
 /// Bytes of the opacities in a voxel of each list.

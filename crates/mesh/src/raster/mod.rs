@@ -25,7 +25,7 @@ use bin::Bin;
 use bins::Bins;
 use shiftvox::graph::Progress;
 
-/// What is seen where nothing is.
+/// The number in place of a triangle where there is none.
 pub const NOTHING: u32 = u32::MAX;
 /// Most pixels a side: what the bits of an edge function have room for.
 pub const MAX_SIDE: u32 = 1 << 15;
@@ -116,8 +116,8 @@ pub struct RasterPicture {
     pub rgba: Vec<[u8; 4]>,
     /// Share of the pixel's samples that see something.
     pub coverage: Vec<f32>,
-    /// View-axis depth of what is opaque, world units, at the sample right of and below the pixel's middle, or at the
-    /// middle with one sample. It is infinite where that sample sees nothing.
+    /// View-axis depth of the opaque surface, world units. It is taken at the sample right of and below the pixel's middle,
+    /// or at the middle with one sample, and infinite where that sample sees nothing.
     pub depth: Vec<f32>,
     /// The triangle that this sample sees, of far voxels the node, or [`NOTHING`].
     pub seen: Vec<u32>,
