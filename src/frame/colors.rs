@@ -1,4 +1,4 @@
-//! A quick picture: each sample's own unlit colour, for display.
+//! A quick picture: each sample's own unlit colour. Experiments time it.
 
 use rayon::prelude::*;
 

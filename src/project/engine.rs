@@ -39,7 +39,7 @@ pub fn most_records(setup: &FrameSetup) -> u64 {
 /// An engine's counts of one frame: names and numbers, in a fixed order.
 pub type Stats = Vec<(&'static str, u64)>;
 
-/// The counts of a frame that was drawn.
+/// The counts of a frame that was drawn, or why it was not.
 pub type Rendered = Result<Stats, EngineError>;
 
 /// A count by its name; 0 if there is none of that name.
@@ -51,8 +51,8 @@ pub fn stat(stats: &[(&'static str, u64)], name: &str) -> u64 {
 
 /// Draws a frame. The picture depends only on the frame set-up and the graph.
 pub trait Engine {
-    /// Draws the unlit colours of the samples' nodes. `of_node` has the colours by graph node. `colors` gets the size of `setup` and
-    /// is cleared first. Experiments time this. Errors: as [`Engine::render`].
+    /// Draws the unlit colours of the samples' nodes. `of_node` has the colours by graph node. `colors` gets the size of
+    /// `setup` and is cleared first. Experiments time this. Errors: as [`Engine::render`].
     fn draw_colors(
         &mut self,
         graph: &GraphView<'_>,

@@ -85,7 +85,10 @@ fn nothing_is_overwritten_unasked_or_left_behind() {
     );
     // A folder is not made where a file stands.
     let refused = vxg::write(&graph, &path.join("folder.vxg"), false).unwrap_err();
-    assert!(matches!(refused, VxgError::Write(_)), "{refused}");
+    assert!(
+        matches!(refused, VxgError::Write(WholeError::Io { .. })),
+        "{refused}"
+    );
     // A broken graph is refused before anything is touched.
     graph.voxels += 1;
     let refused = vxg::write(&graph, &path, true).unwrap_err();

@@ -89,7 +89,7 @@ fn text_of_points_with_colours_and_other_columns() {
         assert_eq!(read_plain(text.as_bytes()), expected, "{text}");
     }
     let (_, info) = read_with(b"1 2 3 0.5 0.5 1\n", &ReadOptions::default()).unwrap();
-    assert!(info.warnings[0].starts_with("columns 4 to 6 are not drawn"));
+    assert!(info.warnings[0].starts_with("columns from 4 of 6 are not drawn"));
     check(b"0 -0.25 0.5\n0.74 25.5 -0.5\n", Some(0.5), &VOXELS);
     for (text, part) in [
         (
@@ -100,6 +100,7 @@ fn text_of_points_with_colours_and_other_columns() {
             "1 2 3\n\n1 2 x\n",
             "line 3 at byte 7: expected a number, found \"x\"",
         ),
+        ("x\n1 2 3\nx1 2 3\n", "line 3 at byte 8: expected a number"),
         (
             "1 2 3 1 2 3\n1 2 3 1 2 256\n",
             "line 2 at byte 12: expected colours from 0 to 255",

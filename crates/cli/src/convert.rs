@@ -133,7 +133,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     if (is_ending("tvx") || is_ending("far"))
         && let Some(idle) = idle.next()
     {
-        let message = format!("--{idle} changes nothing of a .far or .tvx file");
+        let message = format!("--{idle} changes nothing in a .far or .tvx file");
         return Err(CliError::usage(message).advise("leave it out"));
     }
     if is_ending("tvx") {

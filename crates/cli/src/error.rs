@@ -15,6 +15,7 @@ use shiftvox::whole::WholeError;
 use shiftvox_lab::bench::BenchError;
 use shiftvox_lab::model::ModelError;
 use shiftvox_lab::model::vectors::VectorsError;
+use shiftvox_mesh::raster::RasterError;
 use shiftvox_mesh::view_error::ViewError;
 use shiftvox_mesh::{far, textured};
 
@@ -172,6 +173,7 @@ exit_codes! {
             let has: Vec<String> = has.iter().map(u32::to_string).collect();
             return Self::usage(message).advise(format!("it has grids of {}", has.join(", ")));
         },
+        ViewError::Raster(RasterError::TooMany(_)) => Kind::Limit,
         ViewError::Raster(_) | ViewError::VoxelSize(_) | ViewError::TexelSize(_) => Kind::Usage,
     }
     ModelError {

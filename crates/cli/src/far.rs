@@ -153,9 +153,9 @@ fn check_room(triangles: u64, budget: Option<u64>) -> Result<(), CliError> {
         Some(free) if needed > free => Err(CliError::new(
             Kind::Limit,
             format!(
-                "{triangles} triangles take at least {} MiB of memory while far voxels are built of \
-                 them, and {} MiB are free",
-                needed >> 20,
+                "{triangles} triangles take at least {}M of memory while far voxels are built of \
+                 them, and {}M are free",
+                needed.div_ceil(1 << 20),
                 free >> 20
             ),
         )
@@ -250,7 +250,7 @@ fn describe(file: &FarFile, name: &str) -> Value {
         "complex_share": share(&[3, 4, 5]),
         "bytes": file.file_bytes(),
         "voxel_bytes": sum(&Node::voxel_bytes),
-        "opacity_bytes": (0..6).map(|n| list(n) * OPACITY_BYTES[n] as u64).sum::<u64>(),
+        "opacity_bytes": (0..OPACITY_BYTES.len()).map(|n| list(n) * OPACITY_BYTES[n] as u64).sum::<u64>(),
         "surface_triangles": sum(&surface),
         "surface_bytes": sum(&Node::surface_bytes),
         "texture_bytes": file.texture_bytes(),

@@ -22,7 +22,9 @@ pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(
         if !source.line(&mut line, MAX_LINE, "points")? {
             break;
         }
-        let Some(words) = words(&line) else { continue };
+        let Some(words) = words(&line, layout.is_none()) else {
+            continue;
+        };
         let part = || (format!("line {number}"), begin);
         if has_decimal_commas(&line) {
             let advice = "write decimal points in place of commas";
@@ -57,18 +59,18 @@ pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(
     }
     if let Some((columns @ 4.., None)) = layout {
         emitter.info.warnings.push(format!(
-            "columns 4 to {columns} are not drawn: colours are three whole numbers from 0 to 255"
+            "columns from 4 of {columns} are not drawn: colours are three whole numbers from 0 to 255"
         ));
     }
     cloud.finish(&mut emitter.info)
 }
 
-/// The words of a line, or `None` of a comment, the names of columns, or a blank line.
-fn words(line: &[u8]) -> Option<impl Iterator<Item = &[u8]>> {
+/// The words of a line, or `None` of a comment, a blank line, or, before the first point, names of columns.
+fn words(line: &[u8], may_be_names: bool) -> Option<impl Iterator<Item = &[u8]>> {
     let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line);
     let text = line.trim_ascii();
     let is_data = !text.is_empty() && !text.starts_with(b"#") && !text.starts_with(b"//");
-    let is_data = is_data && !text.starts_with(b"x") && !text.starts_with(b"X");
+    let is_data = is_data && !(may_be_names && matches!(text, [b'x' | b'X', ..]));
     let ends = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, b',' | b';');
     is_data.then(|| text.split(ends).filter(|word| !word.is_empty()))
 }
@@ -96,7 +98,9 @@ fn colors(first: &[Number]) -> Option<usize> {
 
 /// Whether the first line with contents has three numbers or more, and only numbers.
 pub(super) fn is_xyz(beginning: &[u8], _: u64) -> bool {
-    let first = beginning.split(|byte| *byte == b'\n').find_map(words);
+    let first = beginning
+        .split(|byte| *byte == b'\n')
+        .find_map(|line| words(line, true));
     first.is_some_and(|mut words| {
         let mut numbers = 0;
         words.all(|word| {

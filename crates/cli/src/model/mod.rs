@@ -87,8 +87,8 @@ fn find(
     progress.begin("cycles", counted.counter.records());
     let (picture, simulated) = simulate(args, &subject, &setup, &hardware, console)?;
     progress.begin("the exact picture and the ray caster", 0);
-    let true_setup = frame::exact_setup(graph, &subject.camera, options.aa_log2)?;
-    let exact = frame::reference(&graph.view(), &true_setup)?;
+    let exact_setup = frame::exact_setup(graph, &subject.camera, options.aa_log2)?;
+    let exact = frame::reference(&graph.view(), &exact_setup)?;
     let designs = (rival, &hardware);
     let ray_caster = ray_caster::measure(graph, &setup, designs, prices, &exact)?;
     progress.end();

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::mesh_view::light_of;
-use super::triangles::is_seen;
+use super::triangles::node_of;
 use super::{Drawn, MeshDrawing};
 use crate::raster::{Pattern, RasterCamera, RasterOptions, Samples};
 use crate::textured::TexturedFile;
@@ -32,7 +32,7 @@ pub fn of_textured(file: &TexturedFile, style: TexturedStyle) -> MeshDrawing<'_>
         };
         let (drawn, counts) = view::draw(file, view, &options)?;
         let details = vec![("engine", json!("textured"))];
-        Ok(Drawn::new(drawn, is_seen, counters(file, &counts), details))
+        Ok(Drawn::new(drawn, node_of, counters(file, &counts), details))
     };
     MeshDrawing::new(file.mesh_box(), style.aa_log2, Box::new(draw))
 }

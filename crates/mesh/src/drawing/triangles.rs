@@ -34,12 +34,12 @@ pub fn of_triangles<'m>(
         let triangles = mesh.triangles().len();
         let counters = vec![("triangles", json!(triangles)), ("samples", json!(samples))];
         let details = vec![("engine", json!("triangles"))];
-        Ok(Drawn::new(drawn, is_seen, counters, details))
+        Ok(Drawn::new(drawn, node_of, counters, details))
     };
     MeshDrawing::new(mesh_box(mesh, up == Up::Y), 0, Box::new(draw))
 }
 
-/// Triangles are not nodes: 0 where one is seen, else -1.
-pub(super) fn is_seen(triangle: u32) -> i32 {
+/// Triangles are of no node: 0 where one is seen, else -1.
+pub(super) fn node_of(triangle: u32) -> i32 {
     -i32::from(triangle == NOTHING)
 }

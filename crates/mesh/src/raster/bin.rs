@@ -326,7 +326,8 @@ impl<S: Surface + ?Sized> Paints<'_, '_, S> {
     }
 }
 
-/// A pixel's colour, of so many samples that see something: premultiplied linear light, and the background's.
+/// The colour of a pixel. `sum` is the premultiplied linear light of all its `samples`, of which `seen` see something, a
+/// fraction where that lets light through. `background` is linear light, too.
 pub(crate) fn mixed(sum: DVec3, seen: f64, samples: f64, background: Option<DVec3>) -> [u8; 4] {
     let (mean, alpha) = match background {
         Some(background) => {

@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn each_square_has_one_sample() {
-        for side_log2 in [0, 1, 2, 4] {
+        for side_log2 in 0..=4 {
             for pattern in [Pattern::Regular, Pattern::Stratified { seed: 7 }] {
                 let samples = Samples::new(side_log2, pattern);
                 let square = SUBPIXELS / i64::from(samples.side);

@@ -53,7 +53,7 @@ gltf | /extensionsUsed: ["KHR_draco_mesh_compression"] | accessor 0: expected a 
 gltf | /extensionsUsed: ["EXT_other"]         | found none
 gltf | /accessors/0: {"componentType": 5126, "count": 4, "type": "VEC3", "sparse": {"count": 2, "indices": {"bufferView": 1, "byteOffset": 4, "componentType": 5123}, "values": {"bufferView": 0}}} | accessor 0: expected sparse indices in ascending order, below its count
 gltf | /accessors/0: {"componentType": 5126, "count": 4, "type": "VEC3", "sparse": {"count": 9, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}} | accessor 0: expected 9 elements of 2 bytes
-gltf | /accessors/0: {"componentType": 5126, "count": 400000000000, "type": "VEC3", "sparse": {"count": 0, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}} | at most 16 triangles for a byte of the file
+gltf | /accessors/0: {"componentType": 5126, "count": 1000000000000000000, "type": "VEC3", "sparse": {"count": 0, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}} | at most 16 triangles for a byte of the file
 gltf | /nodes/0: {"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"SCALE": 9}}}} | accessor 9: expected an accessor of this number
 PLY  | ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty int y\nproperty int z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n1 2 3\n2 0 7\n | tristrips 0 at byte 157: expected corners from 0 to 0, found 7
 GLTF | {"asset":                              | JSON at line 1: expected glTF 2.0

@@ -59,6 +59,7 @@ pub fn directions(count: u32) -> impl Iterator<Item = DVec3> {
 
 /// Unlit, with a regular pattern of samples, without a background.
 pub fn plain(samples: u32) -> RasterOptions {
+    assert!([1, 4, 16, 64, 256].contains(&samples));
     RasterOptions {
         samples: Samples::new(samples.ilog2() / 2, Pattern::Regular),
         light: None,

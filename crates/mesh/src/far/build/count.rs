@@ -167,8 +167,8 @@ pub(super) struct Probes<'p> {
 }
 
 impl<'p> Probes<'p> {
-    /// By voxel of the grid, its number if it is touched, and 0 or one more than the probes aimed at it if it is kept. By
-    /// touched voxel, its number among the `count` kept ones.
+    /// By voxel of the grid: `slot`, its number if it is touched, and `aimed`, 0 if it is not kept, else one more than the
+    /// probes aimed at it. By touched voxel: `kept`, its number among the `count` kept ones.
     pub(super) fn new(
         target: &'p Target<'p>,
         shots: &'p [Shot],

@@ -149,6 +149,7 @@ impl Spooled {
     }
 }
 
+/// Far voxels in memory. Finished nodes are in the system's folder of temporary files until the last one is.
 pub fn build(
     surface: &dyn Surface,
     options: &BuildOptions,

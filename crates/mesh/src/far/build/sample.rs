@@ -225,12 +225,10 @@ impl Found<'_> {
     ) -> io::Result<Vec<u32>> {
         let begin = self.shots.len();
         let aims = (0..self.touched.len() as u32).filter(|&number| self.is_seen[number as usize]);
-        let aims: Vec<u32> = aims.collect();
+        let aims = aims.map(|aim| (aim, Directions::new(chance)));
+        let aims: Vec<(u32, Directions)> = aims.collect();
         let left = most - begin as u32;
         let mut aimed = vec![0; self.touched.len()];
-        let directions = aims.iter().map(|_| Directions::new(chance));
-        let directions: Vec<Directions> = directions.collect();
-        let aims: Vec<(u32, Directions)> = aims.into_iter().zip(directions).collect();
         let mut shoot = |wanted: &dyn Fn(usize) -> u32, most, found: &mut Self| {
             found.shoot_at(&aims, wanted, most, &mut aimed, target, chance)
         };

@@ -20,7 +20,7 @@ const NOISE: f64 = 5.0;
 /// Added hits and passes, so that a few rays which all hit do not prove that all would.
 const DOUBT: f64 = 0.5;
 
-/// A side is solid if at most this share of its probes leaves the layer, and if it has at least so many probes.
+/// A side is solid where at most this share of its probes leaves the layer, if there are so many ([`solid_from`]).
 const MOST_PASSED: f64 = 0.05;
 const LEAST_PROBES: u32 = 4;
 

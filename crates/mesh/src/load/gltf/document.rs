@@ -80,7 +80,7 @@ pub(super) struct NodeExtensions {
     pub(super) instances: Option<Instances>,
 }
 
-/// Accessors by their names. Some exporters write `null` for an attribute that is not there.
+/// Accessors by their names, of two the last. Some exporters write `null` for an attribute that is not there.
 pub(super) type Attributes = HashMap<String, Option<usize>>;
 
 /// Accessors of `TRANSLATION`, `ROTATION` and `SCALE` of each instance.

@@ -50,7 +50,9 @@ impl<'d> Reader<'d> {
             document,
             buffers,
             beside,
-            most: FREE_TRIANGLES + TRIANGLES_A_BYTE * bytes,
+            most: TRIANGLES_A_BYTE
+                .saturating_mul(bytes)
+                .saturating_add(FREE_TRIANGLES),
             skipped_modes: 0,
             morphed: 0,
             skinned: 0,
@@ -201,10 +203,10 @@ impl<'d> Reader<'d> {
                 let [positions, triangles] = parts.map_or([0; 2], |of| [of.0.count, of.2]);
                 // Positions take memory, too. Also a primitive without any takes time.
                 used = used.saturating_add(positions.saturating_add(triangles).saturating_add(1));
-                bytes = bytes.saturating_add(24 * positions as u64 + 16 * triangles as u64);
                 if used > self.most {
                     return Err(too_many());
                 }
+                bytes += 24 * positions as u64 + 16 * triangles as u64;
             }
         }
         match builder.folder() {
