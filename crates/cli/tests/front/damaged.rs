@@ -32,7 +32,7 @@ fn a_place_that_cannot_be_drawn_is_the_files_fault() {
     ];
     for (ending, header, fields) in formats {
         let name = format!("sheet.{ending}");
-        folder.run(&format!("convert sheet.obj {name} --depth 4"), 0);
+        folder.run(&format!("convert sheet.obj {name}"), 0);
         let sound = folder.get(&name);
         let odd = [1e120, f64::NAN, f64::INFINITY];
         for (at, odd) in fields.iter().flat_map(|at| odd.map(|odd| (at, odd))) {
