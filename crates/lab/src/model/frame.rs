@@ -113,7 +113,7 @@ pub fn simulate(
 }
 
 /// The set-up of the exact picture, which errors are measured against: 64 bits, whatever the measured format.
-/// [`reference`] leaves out its level of detail.
+/// [`reference()`] leaves out its level of detail.
 pub fn exact_setup(graph: &Graph, camera: &Camera, aa_log2: u32) -> Result<FrameSetup, SetupError> {
     let options = SetupOptions {
         aa_log2,
