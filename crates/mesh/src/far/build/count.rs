@@ -130,12 +130,11 @@ impl Layer {
         let (mut sum, mut agreeing, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
         for (_, normal) in ends.clone() {
             sum += normal;
-            agreeing += normal
-                * if normal.dot(agreeing) < 0.0 {
-                    -1.0
-                } else {
-                    1.0
-                };
+            agreeing += if normal.dot(agreeing) < 0.0 {
+                -normal
+            } else {
+                normal
+            };
             count += 1.0;
         }
         let is_sheet = agreeing.length() > SHEET * count;
