@@ -7,6 +7,7 @@ use super::counters::Counters;
 use super::exact::Exact;
 use super::parts::Parts;
 use super::strips::Candidates;
+use super::waiting::Waiting;
 use crate::graph::GraphView;
 
 #[derive(Debug)]
@@ -22,6 +23,7 @@ pub(super) struct Band<'b, I> {
     pub(super) blends: bool,
     pub(super) sample_offsets: [u32; 64],
     pub(super) candidates: Candidates,
+    pub(super) waiting: Waiting,
     /// By sample.
     pub(super) hits: [Hit; 64],
     pub(super) brick_blocks: &'b mut BrickBlocks,

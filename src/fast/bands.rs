@@ -13,6 +13,7 @@ use super::lanes::Isa;
 use super::parts::Parts;
 use super::strips::Candidates;
 use super::traversal;
+use super::waiting::Waiting;
 use super::window::{TILE_LOG2, Window};
 use crate::graph::GraphView;
 use crate::project::Stop;
@@ -131,6 +132,7 @@ fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters 
         pixels: buffers.pixels,
         counters: Counters::default(),
         candidates: Candidates([0; 64], [[[0; 8]; 8]; 3]),
+        waiting: Waiting::none(),
         hits: [Hit::default(); 64],
         brick_blocks: &mut brick_blocks,
     };
@@ -138,7 +140,11 @@ fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters 
         &mut band,
         (),
         #[inline(always)]
-        |band, ()| traversal::draw_object(band),
+        |band, ()| {
+            traversal::draw_object(band);
+            band.waiting.show(&mut band.pixels);
+        },
     );
+    band.pixels.clear_open(&band.fill);
     band.counters
 }

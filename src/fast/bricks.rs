@@ -258,14 +258,9 @@ fn show_hits<I: Isa, const DEEP: bool>(
     drawn: u64,
     pair: u32,
 ) {
-    if DEEP && !band.pixels.color.is_empty() {
-        for bit in bits(drawn) {
-            let node = band.hits[bit].part::<I, DEEP>(band, brick).node;
-            band.isa.prefetch(band.pixels.color, node as usize);
-        }
-    }
     let first = band.pixels.at(square.left, square.top);
     let first_node = brick.parts.first_node(band.graph).filter(|_| !DEEP);
+    band.waiting.make_room(&mut band.pixels);
     for bit in bits(drawn) {
         let at = first + band.sample_offsets[bit] as usize;
         let hit = band.hits[bit];
@@ -273,10 +268,7 @@ fn show_hits<I: Isa, const DEEP: bool>(
             Some(first) => brick.parts.after(first, u32::from(hit.part)),
             None => hit.part::<I, DEEP>(band, brick).node,
         };
-        let word = band.pixels.word(node);
-        if let Some(shown) = band.pixels.shown.get_mut(at) {
-            *shown = word;
-        }
+        band.waiting.push(band.isa, &band.pixels, at, node);
     }
     if band.pixels.wants_voxels() {
         for bit in bits(drawn) {

@@ -217,9 +217,33 @@ impl Pixels<'_> {
         }
     }
 
+    /// Clears what [`Pixels::clear_open`] does not.
     pub(super) fn clear(&mut self) {
-        let nothing = if self.color.is_empty() { NO_NODE } else { 0 };
-        self.shown.fill(nothing);
+        if !self.blend.is_empty() {
+            self.shown.fill(NO_NODE);
+        }
         self.voxel.fill(crate::frame::NO_VOXEL);
+    }
+
+    /// Clears the samples that are open in the end, so that others are written once. Blended ones may be open.
+    pub(super) fn clear_open(&mut self, fill: &Fill<'_>) {
+        if !self.blend.is_empty() {
+            return;
+        }
+        let nothing = if self.color.is_empty() { NO_NODE } else { 0 };
+        let rows = self.shown.chunks_mut(self.width << TILE_LOG2);
+        for (rows, tiles) in rows.zip(fill.tiles.chunks(fill.tiles_across)) {
+            for (x, &open) in tiles.iter().enumerate() {
+                if open == ALL {
+                    for row in rows.chunks_mut(self.width) {
+                        row[8 * x..][..8].fill(nothing);
+                    }
+                    continue;
+                }
+                for bit in bits(open) {
+                    rows[(bit >> 3) * self.width + 8 * x + (bit & 7)] = nothing;
+                }
+            }
+        }
     }
 }

@@ -35,6 +35,7 @@ mod proof;
 mod strips;
 mod traversal;
 mod voxels;
+mod waiting;
 mod window;
 
 use std::sync::atomic::AtomicBool;
