@@ -259,14 +259,16 @@ fn show_hits<I: Isa, const DEEP: bool>(
     pair: u32,
 ) {
     let first = band.pixels.at(square.left, square.top);
-    let first_node = brick.parts.first_node(band.graph).filter(|_| !DEEP);
+    let first_node = brick.parts.first_node(band.graph);
     band.waiting.make_room(&mut band.pixels);
     for bit in bits(drawn) {
         let at = first + band.sample_offsets[bit] as usize;
         let hit = band.hits[bit];
-        let node = match first_node {
-            Some(first) => brick.parts.after(first, u32::from(hit.part)),
-            None => hit.part::<I, DEEP>(band, brick).node,
+        let node = if DEEP {
+            hit.part::<I, DEEP>(band, brick).node
+        } else {
+            let part = u32::from(hit.part);
+            brick.parts.node(band.graph, first_node, part)
         };
         band.waiting.push(band.isa, &band.pixels, at, node);
     }
@@ -315,9 +317,10 @@ fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, wanted: u64, octant
     if blocks.octant != octant {
         (blocks.octant, blocks.ready) = (octant, 0);
     }
+    let first_node = brick.parts.first_node(band.graph);
     for number in bits(wanted & !blocks.ready) {
         let part = number as u32 ^ (u32::from(octant) * 9);
-        let node = brick.parts.part(band.graph, part).node;
+        let node = brick.parts.node(band.graph, first_node, part);
         let parts = &mut blocks.parts[number];
         parts.read(band.isa, band.graph, node, false, 0);
         parts.prefetch(band.isa, band.graph);

@@ -152,9 +152,17 @@ impl Parts {
         (self.kind == Kind::Plain).then(|| graph.first(self.first))
     }
 
-    /// A part's node, from the first one.
+    /// A part's node. `first`: [`Parts::first_node`].
     #[inline(always)]
-    pub(super) fn after(&self, first: u32, part: u32) -> u32 {
+    pub(super) fn node(&self, graph: &GraphView<'_>, first: Option<u32>, part: u32) -> u32 {
+        match first {
+            Some(first) => self.after(first, part),
+            None => self.look_up(graph, part).node,
+        }
+    }
+
+    #[inline(always)]
+    fn after(&self, first: u32, part: u32) -> u32 {
         let before = self.exist & ((1 << (part & 63)) - 1);
         first.wrapping_add(before.count_ones())
     }
