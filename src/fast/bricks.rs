@@ -41,9 +41,9 @@ pub(super) fn draw<I: Isa, const DEEP: bool>(
     }
     if DEEP {
         band.brick_blocks.ready = 0;
-        brick.parts.prefetch_masks(band.isa, band.graph);
+        brick.parts.prefetch_masks(band.graph);
     } else {
-        brick.parts.prefetch(band.isa, band.graph);
+        brick.parts.prefetch(band.graph);
     }
     each_square(
         band,
@@ -270,7 +270,7 @@ fn show_hits<I: Isa, const DEEP: bool>(
             let part = u32::from(hit.part);
             brick.parts.node(band.graph, first_node, part)
         };
-        band.waiting.push(band.isa, &band.pixels, at, node);
+        band.waiting.push(&mut band.pixels, at, node);
     }
     if band.pixels.wants_voxels() {
         for bit in bits(drawn) {
@@ -323,7 +323,7 @@ fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, wanted: u64, octant
         let node = brick.parts.node(band.graph, first_node, part);
         let parts = &mut blocks.parts[number];
         parts.read(band.isa, band.graph, node, false, 0);
-        parts.prefetch(band.isa, band.graph);
+        parts.prefetch(band.graph);
         blocks.exist[number] = band.isa.turned(parts.exist, octant);
     }
     blocks.ready |= wanted;

@@ -195,6 +195,13 @@ impl Pixels<'_> {
     }
 
     #[inline(always)]
+    pub(super) fn set(&mut self, at: usize, word: u32) {
+        if let Some(shown) = self.shown.get_mut(at) {
+            *shown = word;
+        }
+    }
+
+    #[inline(always)]
     pub(super) fn show<I: Isa>(
         &mut self,
         isa: I,
@@ -217,7 +224,7 @@ impl Pixels<'_> {
         }
     }
 
-    /// Clears what [`Pixels::clear_open`] does not.
+    /// Before drawing: clears voxels, and the nodes of a blended picture, whose drawn samples may stay open.
     pub(super) fn clear(&mut self) {
         if !self.blend.is_empty() {
             self.shown.fill(NO_NODE);
@@ -225,7 +232,7 @@ impl Pixels<'_> {
         self.voxel.fill(crate::frame::NO_VOXEL);
     }
 
-    /// Clears the samples that are open in the end, so that others are written once. Blended ones may be open.
+    /// After drawing: clears the samples that are still open, so that others are written once.
     pub(super) fn clear_open(&mut self, fill: &Fill<'_>) {
         if !self.blend.is_empty() {
             return;

@@ -1,7 +1,7 @@
 //! Parts: the 64 grandchildren of a node, each a quarter of its side.
 
 use super::lanes::Isa;
-use crate::graph::GraphView;
+use crate::graph::{GraphView, prefetch};
 
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Parts {
@@ -117,16 +117,16 @@ impl Parts {
     }
 
     #[inline(always)]
-    pub(super) fn prefetch<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
-        isa.prefetch(graph.first, self.first as usize);
+    pub(super) fn prefetch(&self, graph: &GraphView<'_>) {
+        prefetch(graph.first, self.first as usize);
     }
 
     #[inline(always)]
-    pub(super) fn prefetch_masks<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
+    pub(super) fn prefetch_masks(&self, graph: &GraphView<'_>) {
         let part = graph.first.get(self.first as usize).copied().unwrap_or(0);
         let first = graph.first.get(part as usize).copied().unwrap_or(0) as usize;
         for line in 0..4 {
-            isa.prefetch(graph.mask, first + 64 * line);
+            prefetch(graph.mask, first + 64 * line);
         }
     }
 

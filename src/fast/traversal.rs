@@ -8,7 +8,7 @@ use super::lanes::Isa;
 use super::parts::Parts;
 use super::window::Window;
 use super::{bricks, planes, voxels};
-use crate::graph::MAX_DEPTH;
+use crate::graph::{MAX_DEPTH, prefetch};
 
 #[inline(always)]
 pub(super) fn draw_object<I: Isa>(band: &mut Band<'_, I>) {
@@ -182,17 +182,17 @@ impl<'b> Children<'b> {
     /// Begins to read what the next child will need while another is drawn: its children, and the first one's.
     #[inline(always)]
     fn prefetch<I: Isa>(&self, band: &Band<'_, I>) {
-        let (isa, graph) = (band.isa, band.graph);
+        let graph = band.graph;
         if self.left != 0
             && let Some(child) = graph.child(self.record.node, self.octant())
         {
             let children = graph.first(child);
-            isa.prefetch(graph.mask, children as usize);
-            isa.prefetch(graph.first, children as usize);
+            prefetch(graph.mask, children as usize);
+            prefetch(graph.first, children as usize);
             let below = graph.first(children) as usize;
-            isa.prefetch(graph.mask, below);
+            prefetch(graph.mask, below);
             for line in 0..3 {
-                isa.prefetch(graph.first, below.wrapping_add(16 * line));
+                prefetch(graph.first, below.wrapping_add(16 * line));
             }
         }
     }

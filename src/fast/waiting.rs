@@ -1,10 +1,12 @@
-//! Hits whose colours are being fetched: colours lie all over the memory, and a sample is not needed again once it is drawn.
+//! Hits whose colours are on their way from the memory: nodes lie all over it, and nobody needs a drawn sample again. Their
+//! samples are marked as drawn, so nothing else is shown there before they are.
 
 use super::canvas::Pixels;
 use super::directions::SAMPLES;
-use super::lanes::Isa;
+use crate::graph::prefetch;
 
-const MOST: usize = 256;
+/// Squares of hits, times the samples of a square.
+const MOST: usize = 4 * SAMPLES.len();
 
 #[derive(Debug)]
 pub(super) struct Waiting {
@@ -29,10 +31,14 @@ impl Waiting {
         }
     }
 
-    /// Adds a hit, after [`Waiting::make_room`].
+    /// Adds a hit, after [`Waiting::make_room`]. The remainder is for the compiler, which sees no overflow then.
     #[inline(always)]
-    pub(super) fn push<I: Isa>(&mut self, isa: I, pixels: &Pixels<'_>, at: usize, node: u32) {
-        isa.prefetch(pixels.color, node as usize);
+    pub(super) fn push(&mut self, pixels: &mut Pixels<'_>, at: usize, node: u32) {
+        if pixels.color.is_empty() {
+            pixels.set(at, node);
+            return;
+        }
+        prefetch(pixels.color, node as usize);
         self.hits[self.count % MOST] = (at, node);
         self.count += 1;
     }
@@ -40,10 +46,7 @@ impl Waiting {
     #[inline(always)]
     pub(super) fn show(&mut self, pixels: &mut Pixels<'_>) {
         for &(at, node) in &self.hits[..self.count.min(MOST)] {
-            let word = pixels.word(node);
-            if let Some(shown) = pixels.shown.get_mut(at) {
-                *shown = word;
-            }
+            pixels.set(at, pixels.word(node));
         }
         self.count = 0;
     }

@@ -15,6 +15,7 @@ mod normal;
 mod normals;
 mod opacity;
 pub mod place;
+mod prefetch;
 mod pushed;
 mod side_by_side;
 mod store;
@@ -31,6 +32,7 @@ pub use linked::LinkedGraph;
 pub use mesh_box::MeshBox;
 pub(crate) use normal::KnownNormals;
 pub use opacity::{MOST_OPACITY, Opacity, sixteenths};
+pub use prefetch::prefetch;
 pub use store::Store;
 pub use validate::Invalid;
 

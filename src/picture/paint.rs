@@ -5,7 +5,10 @@ use super::ResolveError;
 use super::shade::{Shader, is_turned};
 use super::shares::{Facing, Run, Shares, TOGETHER};
 use crate::frame::{Blend, Frame, NO_NODE};
-use crate::graph::PackedNormal;
+use crate::graph::{PackedNormal, prefetch};
+
+/// Runs of [`TOGETHER`] samples, of whose nodes colours and normals are read ahead.
+const AHEAD: usize = 2;
 
 pub(super) struct Painter<'p, const N: usize> {
     frame: &'p Frame,
@@ -138,6 +141,9 @@ impl<'p, const N: usize> Painter<'p, N> {
         };
         let starts = (0usize..).step_by(TOGETHER);
         for (start, nodes) in starts.zip(runs.iter().chain([&padded])) {
+            if let Some(ahead) = runs.get(start / TOGETHER + AHEAD) {
+                self.prefetch(ahead);
+            }
             if nodes
                 .iter()
                 .fold(true, |all, &node| all & (node == NO_NODE))
@@ -171,6 +177,18 @@ impl<'p, const N: usize> Painter<'p, N> {
             }
         }
         Ok(())
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, nodes: &[u32; TOGETHER]) {
+        let mut before = NO_NODE;
+        for &node in nodes {
+            if node != before && node != NO_NODE {
+                prefetch(self.color, node as usize);
+                prefetch(self.normal, node as usize);
+            }
+            before = node;
+        }
     }
 
     #[inline(always)]

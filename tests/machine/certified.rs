@@ -44,6 +44,9 @@ fn compare(
     let setup = FrameSetup::new(camera, &graph.placement, graph.depth, options).ok()?;
     let mut truth = Frame::new(setup.width, setup.height, false);
     let mut frame = truth.clone();
+    // Nothing of an earlier picture remains.
+    frame.node.fill(3);
+    frame.voxel.fill([3; 4]);
     let drawn = Rays::default().render(&graph.view(), &setup, &mut truth);
     drawn.expect("the oracle never fails");
     let mut engine = Fast::new(fast, Box::new(Machine::default()));

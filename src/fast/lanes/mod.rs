@@ -182,6 +182,4 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
             entries[(bit >> 3) * width + (bit & 7)] = value;
         }
     }
-    #[inline(always)]
-    fn prefetch<T>(self, _: &[T], _: usize) {}
 }

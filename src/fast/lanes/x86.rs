@@ -284,10 +284,4 @@ impl Isa for Vector {
             }
         }
     }
-    #[inline(always)]
-    fn prefetch<T>(self, entries: &[T], at: usize) {
-        // Any address may be prefetched; nothing is read.
-        let entry = entries.as_ptr().wrapping_add(at);
-        intrinsics!(_mm_prefetch::<_MM_HINT_T0>(entry.cast()));
-    }
 }
