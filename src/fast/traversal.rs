@@ -8,7 +8,7 @@ use super::lanes::Isa;
 use super::parts::Parts;
 use super::window::Window;
 use super::{bricks, planes, voxels};
-use crate::graph::{MAX_DEPTH, prefetch};
+use crate::graph::{GraphView, MAX_DEPTH, prefetch};
 
 #[inline(always)]
 pub(super) fn draw_object<I: Isa>(band: &mut Band<'_, I>) {
@@ -171,7 +171,7 @@ impl<'b> Children<'b> {
         self.level = level;
         self.nearest = u32::from(nearest);
         self.left = band.isa.turned(u64::from(wanted) << (8 * nearest), nearest) as u32;
-        self.prefetch(band);
+        self.prefetch(band.graph);
     }
 
     #[inline(always)]
@@ -181,8 +181,7 @@ impl<'b> Children<'b> {
 
     /// Begins to read what the next child will need while another is drawn: its children, and the first one's.
     #[inline(always)]
-    fn prefetch<I: Isa>(&self, band: &Band<'_, I>) {
-        let graph = band.graph;
+    fn prefetch(&self, graph: &GraphView<'_>) {
         if self.left != 0
             && let Some(child) = graph.child(self.record.node, self.octant())
         {
@@ -202,7 +201,7 @@ impl<'b> Children<'b> {
         let (record, level) = (&self.record, self.level);
         let octant = usize::from(self.octant());
         self.left &= self.left - 1;
-        self.prefetch(band);
+        self.prefetch(band.graph);
         let mut window = self.windows.at(octant);
         let centre = [0, 1, 2].map(|c| record.centre[c] + level.child[c][octant]);
         if self.windows.near >> octant & 1 != 0 {

@@ -1,11 +1,11 @@
-//! Hits whose colours are on their way from the memory: nodes lie all over it, and nobody needs a drawn sample again. Their
-//! samples are marked as drawn, so nothing else is shown there before they are.
+//! Hits whose colours are on their way from the memory, because nodes lie all over it. Their samples are marked as drawn
+//! already, so only these hits are shown there.
 
 use super::canvas::Pixels;
 use super::directions::SAMPLES;
 use crate::graph::prefetch;
 
-/// Squares of hits, times the samples of a square.
+/// Hits that wait at most: those of four squares.
 const MOST: usize = 4 * SAMPLES.len();
 
 #[derive(Debug)]
@@ -31,7 +31,8 @@ impl Waiting {
         }
     }
 
-    /// Adds a hit, after [`Waiting::make_room`]. The remainder is for the compiler, which sees no overflow then.
+    /// Adds a hit, after [`Waiting::make_room`]; one that needs no colour is shown at once. The remainder is for the
+    /// compiler, which sees no overflow then.
     #[inline(always)]
     pub(super) fn push(&mut self, pixels: &mut Pixels<'_>, at: usize, node: u32) {
         if pixels.color.is_empty() {

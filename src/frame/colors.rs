@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::{Frame, NO_NODE};
+use super::Frame;
 use crate::budget::Shortage;
 
-const TOGETHER: usize = 16;
+/// Samples that a thread takes at least.
 const SHARE: usize = 1 << 15;
 
 #[derive(Debug, Clone)]
@@ -43,52 +43,16 @@ impl Colors {
         self.nodes.get_or_insert_with(|| Frame::nodes_only(0, 0))
     }
 
-    /// Looks up the colours of the nodes that [`Colors::nodes`] shows. `of_node`: colours by graph node.
+    /// Looks up the colours of the nodes that [`Colors::nodes`] shows, on the threads of the current pool. `of_node`:
+    /// colours by graph node.
     pub fn take_nodes(&mut self, of_node: &[[u8; 3]]) {
-        if let Some(frame) = self.nodes.take() {
-            self.take(of_node, &frame);
-            self.nodes = Some(frame);
-        }
-    }
-
-    /// Looks up the colours of a frame of this size, on the threads of the current pool.
-    fn take(&mut self, of_node: &[[u8; 3]], frame: &Frame) {
-        let nodes = frame.node.par_chunks(SHARE);
-        let words = self.words.par_chunks_mut(SHARE);
-        nodes
-            .zip(words)
-            .for_each(|(nodes, words)| look_up(of_node, nodes, words));
-    }
-}
-
-fn look_up(of_node: &[[u8; 3]], nodes: &[u32], words: &mut [u32]) {
-    let chunks = nodes.chunks(TOGETHER).zip(words.chunks_mut(TOGETHER));
-    for (nodes, words) in chunks {
-        if nodes
-            .iter()
-            .fold(true, |all, &node| all & (node == NO_NODE))
-        {
-            words.fill(0);
-            continue;
-        }
-        for (&node, word) in nodes.iter().zip(words) {
-            *word = of_node
-                .get(node as usize)
-                .map_or(0, |&color| color_word(color));
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nodes_become_colors_and_nothing_zero() {
-        let mut colors = Colors::new(2, 2);
-        colors.nodes().node = vec![NO_NODE, 2, NO_NODE, 1];
-        colors.words.fill(7);
-        colors.take_nodes(&[[9, 9, 9], [1, 2, 3], [4, 5, 6]]);
-        assert_eq!(colors.words, [0, 0xff04_0506, 0, 0xff01_0203]);
+        let Some(frame) = &self.nodes else {
+            return;
+        };
+        let words = self.words.par_iter_mut().zip(&frame.node);
+        words.with_min_len(SHARE).for_each(|(word, &node)| {
+            let color = of_node.get(node as usize);
+            *word = color.map_or(0, |&color| color_word(color));
+        });
     }
 }

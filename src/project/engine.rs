@@ -52,7 +52,7 @@ pub fn stat(stats: &[(&'static str, u64)], name: &str) -> u64 {
 /// Draws a frame. The picture depends only on the frame set-up and the graph.
 pub trait Engine {
     /// Draws the unlit colours of the samples' nodes. `of_node` has the colours by graph node. `colors` gets the size of
-    /// `setup`, and nothing of what it had remains. Experiments time this. Errors: as [`Engine::render`].
+    /// `setup`, and each of its entries is written. Experiments time this. Errors: as [`Engine::render`].
     fn draw_colors(
         &mut self,
         graph: &GraphView<'_>,
@@ -66,7 +66,7 @@ pub trait Engine {
         Ok(())
     }
 
-    /// Draws into `frame`, which gets the size of `setup`; nothing of what it had remains. Fails when the frame cannot be
+    /// Draws into `frame`, which gets the size of `setup`. Each of its entries is written. Fails when the frame cannot be
     /// finished; its contents then have no meaning.
     fn render(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> Rendered;
 }
