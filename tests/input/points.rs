@@ -71,7 +71,7 @@ fn text_of_points_with_colours_and_other_columns() {
     for (text, expected) in [
         ("1 2 3\n-4 5 6\n", [gray(a), gray(b)]),
         (
-            "\u{feff}# a\n//X,Y,Z\nx,y,z\n1.0,2.0,3.0\r\n\n-4;5 6e0",
+            "\u{feff}# a\n//X,Y,Z\nx,y,z\n2\n1.0,2.0,3.0\r\n\n-4;5 6e0",
             [gray(a), gray(b)],
         ),
         (

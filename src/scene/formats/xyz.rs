@@ -65,12 +65,14 @@ pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(
     cloud.finish(&mut emitter.info)
 }
 
-/// The words of a line, or `None` of a comment, a blank line, or, before the first point, names of columns.
+/// The words of a line, or `None` of a comment, a blank line, or, before the first point, names of columns or the number
+/// of points.
 fn words(line: &[u8], may_be_names: bool) -> Option<impl Iterator<Item = &[u8]>> {
     let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line);
     let text = line.trim_ascii();
     let is_data = !text.is_empty() && !text.starts_with(b"#") && !text.starts_with(b"//");
-    let is_data = is_data && !(may_be_names && matches!(text, [b'x' | b'X', ..]));
+    let is_head = matches!(text, [b'x' | b'X', ..]) || text.iter().all(u8::is_ascii_digit);
+    let is_data = is_data && !(may_be_names && is_head);
     let ends = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, b',' | b';');
     is_data.then(|| text.split(ends).filter(|word| !word.is_empty()))
 }

@@ -2,10 +2,12 @@
 
 use std::borrow::Cow;
 
-/// The text of a file without byte order mark. Invalid UTF-8 is replaced, which changes only names of materials.
+/// The text of a file without byte order mark. Invalid UTF-8 is replaced, which changes only names of materials. Lines may
+/// end as on an old Macintosh.
 pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     match String::from_utf8_lossy(text) {
+        text if !text.contains('\n') => text.replace('\r', "\n").into(),
         Cow::Borrowed(text) => joined(text),
         Cow::Owned(text) => joined(&text).into_owned().into(),
     }

@@ -40,6 +40,7 @@ STL  | 77777777777777777777                   | header at byte 0: expected 84 by
 gltf | /asset/version: "1.0"                  | asset: expected version 2, found 1.0
 gltf | /accessors/0/count: 400000000000       | accessor 0: expected 400000000000 elements of 12 bytes
 gltf | /accessors/0/count: 18446744073709551615 | accessor 0: expected 18446744073709551615 elements
+gltf | /accessors/0/type: "VEC2"              | accessor 0: expected positions as VEC3
 gltf | /accessors/0/count: 3                  | mesh 0: expected indices from 0 to 2, found 3
 gltf | /accessors/1/componentType: 5126       | accessor 1: expected 6 elements of 4 bytes
 gltf | /bufferViews/1/byteOffset: 18446744073709551615 | expected a buffer view within its buffer
@@ -58,10 +59,14 @@ gltf | /nodes/0: {"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attribu
 PLY  | ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty int y\nproperty int z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n1 2 3\n2 0 7\n | tristrips 0 at byte 157: expected corners from 0 to 0, found 7
 GLTF | {"asset":                              | JSON at line 1: expected glTF 2.0
 GLB  | glTFxx                                 | header at byte 0: expected 12 bytes
+GLB  | glTF\1\0\0\0\0\0\0\0                 | header at byte 4: expected version 2, found 1; export as glTF 2.0
 "#;
 
 fn file(kind: &str, content: &str) -> (MeshFormat, Vec<u8>) {
-    let text = content.replace("\\n", "\n").replace("\\0", "\0");
+    let text = content
+        .replace("\\n", "\n")
+        .replace("\\0", "\0")
+        .replace("\\1", "\u{1}");
     match kind {
         "obj" => (Obj, ["v 0 0 0\nv 1 0 0\nv 1 1 0\n", &text].concat().into()),
         "ply" => {

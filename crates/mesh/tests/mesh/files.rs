@@ -98,6 +98,8 @@ fn obj_files_may_have_coloured_vertices_and_odd_lines() {
     let mesh = load(text.as_bytes(), MeshFormat::Obj).unwrap();
     assert_eq!(mesh.vertex_colors(), [[200, 60, 10], [255, 1, 0], [0; 3]]);
     has(mesh.warnings(), &["taken as 0 to 255"]);
+    let text = b"v 0 0 0\rv 1 0 0\rv 1 1 0\rf 1 2 3\r";
+    assert_eq!(load(text, MeshFormat::Obj).unwrap().triangles().len(), 1);
     // Byte order marks and continued lines.
     let text = "\u{feff}v 0 0 0\nv 1 \\\n0 0\nmtllib a b.mtl\n# C:\\models\\\nusemtl red\nv 0 1 0\n\
         f 1 \\\r\n2 \\\r\n3\r\n";

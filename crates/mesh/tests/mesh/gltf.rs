@@ -28,6 +28,7 @@ const SCENES: &str = r#"
 {"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "sparse": {"count": 2, "indices": {"bufferView": 1, "byteOffset": 2, "componentType": 5123}, "values": {"bufferView": 0, "byteOffset": 24}}}, {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}]} | 000 110 010
 {"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}, {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}, {"bufferView": 0, "byteOffset": 24, "componentType": 5126, "count": 2, "type": "VEC3"}], "extensionsRequired": ["EXT_mesh_gpu_instancing"], "nodes": [{"mesh": 0, "scale": [2, 1, 1], "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 2, "ROTATION": null}}}}]} | 210 410 420, 210 420 220, 010 210 220, 010 220 020
 {"nodes": [{"children": [2, 1], "scale": [2, 1, 1]}, {"mesh": 0, "translation": [3, 0, 0]}, {"mesh": 0}, {"mesh": 0}]} | 000 200 210, 000 210 010, 600 800 810, 600 810 610
+{"nodes": [{"children": [1, 3]}, {"extensions": {"KHR_node_visibility": {"visible": false}}, "children": [2]}, {"mesh": 0}, {"mesh": 0, "extensions": {"KHR_node_visibility": {}}}]} | 000 100 110, 000 110 010
 "#;
 
 #[test]
@@ -182,6 +183,13 @@ fn what_is_not_drawn_is_warned_of() {
     // All opaque, or of no effect.
     json["materials"][0]["alphaMode"] = "OPAQUE".into();
     assert_eq!(mesh_of(&json).warnings().len(), 3);
+    json["accessors"][1]["count"] = 5.into();
+    json["scene"] = 7.into();
+    let warnings = [
+        "the default scene 7 is none of 1; all nodes are drawn",
+        "2 primitives end within a triangle, which was passed over",
+    ];
+    has(mesh_of(&json).warnings(), &warnings);
 }
 
 #[test]

@@ -6,11 +6,11 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value;
 
-use super::{broken, fault_of};
+use super::{EXPORT, broken, fault_of};
 use crate::load::{Fault, Place, Problem};
 
 /// Extensions that a file may require and that change nothing that is read here.
-const HARMLESS: [&str; 8] = [
+const HARMLESS: [&str; 9] = [
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     "KHR_lights_punctual",
@@ -20,6 +20,7 @@ const HARMLESS: [&str; 8] = [
     "EXT_texture_avif",
     "MSFT_texture_dds",
     "EXT_mesh_gpu_instancing",
+    "KHR_node_visibility",
 ];
 
 const UNPACK: &str = "unpack it: gltf-transform cp IN OUT";
@@ -78,6 +79,14 @@ pub(super) struct Node {
 pub(super) struct NodeExtensions {
     #[serde(rename = "EXT_mesh_gpu_instancing")]
     pub(super) instances: Option<Instances>,
+    #[serde(rename = "KHR_node_visibility")]
+    pub(super) visibility: Option<Visibility>,
+}
+
+/// Of a node with all below it. Visible if not said.
+#[derive(Debug, Deserialize)]
+pub(super) struct Visibility {
+    pub(super) visible: Option<bool>,
 }
 
 /// Accessors by their names, of two the last. Some exporters write `null` for an attribute that is not there.
@@ -253,7 +262,7 @@ impl Document {
         let (version, extensions) = (&self.asset.version, &self.extensions_required);
         let is_known = |name: &str| HARMLESS.contains(&name) || name.starts_with("KHR_materials_");
         let (part, expected, found, advice) = if !version.starts_with("2.") {
-            ("asset", "version 2", version, "export as glTF 2.0")
+            ("asset", "version 2", version, EXPORT)
         } else if let Some(unknown) = extensions.iter().find(|name| !is_known(name)) {
             let expected = "no extension that has to be understood";
             let advice = match COMPRESSED.contains(&unknown.as_str()) {

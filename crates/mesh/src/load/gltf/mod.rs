@@ -23,6 +23,8 @@ use document::Document;
 
 const BROKEN: &str = "the file is damaged or cut short; export the mesh again";
 
+const EXPORT: &str = "export as glTF 2.0";
+
 const JSON: usize = 0x4e4f_534a;
 const BIN: usize = 0x004e_4942;
 
@@ -52,7 +54,8 @@ pub(super) fn read_binary(
         return Err(wrong("header", 0, "12 bytes", bytes.len()));
     };
     if version != 2 {
-        return Err(wrong("header", 4, "version 2", version));
+        let (place, found) = (Place::Byte(4), version.to_string());
+        return Err(Fault::new("header", place, "version 2", found, EXPORT).into());
     }
     let Some(bytes) = bytes.get(..length) else {
         let expected = format!("{length} bytes in all, as it says");

@@ -32,6 +32,7 @@ pub(super) struct Reader<'d> {
     morphed: u64,
     skinned: u64,
     without_uvs: u64,
+    incomplete: u64,
     has_opacities: bool,
     textures: Textures,
     /// The material of primitives without one that have colours.
@@ -57,6 +58,7 @@ impl<'d> Reader<'d> {
             morphed: 0,
             skinned: 0,
             without_uvs: 0,
+            incomplete: 0,
             has_opacities: false,
             textures: Textures::default(),
             white: None,
@@ -73,6 +75,12 @@ impl<'d> Reader<'d> {
             if accessor.sparse.is_some() {
                 self.numbers(number)?.check_order(number)?;
             }
+        }
+        let (scene, scenes) = (self.document.scene.unwrap_or(0), self.document.scenes.len());
+        if scene >= scenes && self.document.scene.is_some() {
+            builder.warn(format!(
+                "the default scene {scene} is none of {scenes}; all nodes are drawn"
+            ));
         }
         let shown = self.shown()?;
         self.check_size(&shown, builder)?;
@@ -101,6 +109,10 @@ impl<'d> Reader<'d> {
             (
                 self.without_uvs,
                 "primitives have a texture, but no texture coordinates",
+            ),
+            (
+                self.incomplete,
+                "primitives end within a triangle, which was passed over",
             ),
             (
                 self.skipped_modes,
@@ -140,6 +152,10 @@ impl<'d> Reader<'d> {
             if !seen.insert(number) {
                 let expected = "one parent, in a tree";
                 return Err(broken("node", number, expected, "a second way to it"));
+            }
+            let visibility = node.extensions.visibility.as_ref();
+            if visibility.and_then(|of| of.visible) == Some(false) {
+                continue;
             }
             let placed = parent * transform(node);
             if let Some(mesh) = node.mesh {
@@ -226,6 +242,15 @@ impl<'d> Reader<'d> {
         let Some(positions) = self.attribute(primitive, "POSITION")? else {
             return Ok(None);
         };
+        if !positions.has(2) {
+            let number = primitive.attributes["POSITION"].unwrap_or_default();
+            return Err(broken(
+                "accessor",
+                number,
+                "positions as VEC3",
+                "fewer numbers",
+            ));
+        }
         let indices = primitive.indices.map(|a| self.numbers(a)).transpose()?;
         let corners = indices.as_ref().map_or(positions.count, |i| i.count);
         let triangles = match mode {
@@ -287,6 +312,9 @@ impl<'d> Reader<'d> {
             return Ok(());
         };
         self.morphed += u64::from(!primitive.targets.is_empty());
+        let corners = indices.as_ref().map_or(positions.count, |i| i.count);
+        let is_whole = primitive.mode.unwrap_or(4) != 4 || corners.is_multiple_of(3);
+        self.incomplete += u64::from(!is_whole);
         let normals = self.attribute(primitive, "NORMAL")?;
         let colors = self.attribute(primitive, "COLOR_0")?;
         let blended = primitive
