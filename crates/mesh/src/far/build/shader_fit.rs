@@ -47,7 +47,8 @@ pub(super) fn fit_shader(samples: &[SurfaceSample], normal: DVec3) -> ShaderFit 
 }
 
 /// The steepness from which on a side is solid; all of a side that nothing looks upon, as it is hidden. Chance gives some
-/// sides of a sheet few probes that are not grazing. The other side's count too, where it lets none pass either.
+/// voxels of a sheet few probes that are not grazing. So the other side's count too, where it lets none pass either, and
+/// if all of both sides are stopped, fewer are enough.
 fn solid_from(side: &[Found; STEEPNESSES], other: &[Found; STEEPNESSES]) -> usize {
     let lets_pass = |found: &Found| found.passed > MOST_PASSED * (found.passed + found.stopped);
     let (mut solid, mut own, mut both) = (STEEPNESSES, 0, 0);
@@ -59,7 +60,12 @@ fn solid_from(side: &[Found; STEEPNESSES], other: &[Found; STEEPNESSES]) -> usiz
         counts_other &= !lets_pass(other);
         own += found.probes;
         both += found.probes + if counts_other { other.probes } else { 0 };
-        if own >= LEAST_PROBES || steepness > 0 && own > 0 && both >= LEAST_PROBES {
+        let is_enough = match steepness {
+            0 => own >= LEAST_PROBES,
+            1 if counts_other => both > 0,
+            _ => both >= LEAST_PROBES,
+        };
+        if is_enough {
             solid = steepness;
         }
     }
