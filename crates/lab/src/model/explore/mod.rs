@@ -287,9 +287,6 @@ impl<'a> Shared<'a> {
         let beside = self.of.rival.beside(hardware);
         let rays = ray_caster::price(cast, (self.of.rival, &beside), prices, exact)?;
         let error = CoverageError::between(&counted.frame.voxel, &exact.voxel);
-        let accesses = counted.counter.accesses_by(|cell| cell.memory);
-        let of = |memory: Memory| accesses.get(&memory).copied().unwrap_or_default();
-        let fill = of(Memory::FillVector);
         let counter = &counted.counter;
         Ok(PointOutcome::Drawn(Box::new(PointFigures {
             cycles: cycles.cycles,
@@ -307,9 +304,10 @@ impl<'a> Shared<'a> {
                 divide_steps: counter.ops_of(OpClass::DivideStep),
                 record_bits: counted.record_bits(),
                 deepest_stack: stat(&counted.stats, "deepest_stack"),
-                node_reads: of(Memory::Node).reads,
+                node_reads: counter.reads(Memory::Node),
                 node_misses: cycles.node_cache.misses,
-                fill_accesses: fill.reads + fill.writes,
+                fill_accesses: counter.reads(Memory::FillVector)
+                    + counter.writes(Memory::FillVector),
                 fill_bits: fill_bits::fill_store_bits(setup, hardware),
                 extra: error.extra,
                 missing: error.missing,
