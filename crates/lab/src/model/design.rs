@@ -1,6 +1,7 @@
 //! The light hardware's figures for a frame that was counted and simulated.
 
 use hwmodel::cycles::{CycleReport, Hardware};
+use serde::Serialize;
 
 use super::ModelError;
 use super::area::{self, DesignArea};
@@ -13,7 +14,7 @@ use shiftvox::project::FrameSetup;
 /// The design's name in files of other programs.
 pub const LIGHT: &str = "light";
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct LightDesign {
     pub cost: FrameCost,
     pub area: DesignArea,

@@ -2,14 +2,13 @@
 
 use hwmodel::Memory;
 use hwmodel::cost::{Breakdown, CostError, CostTable};
-use hwmodel::count::{AccessCount, Counter, OpCount};
+use hwmodel::count::{AccessCount, OpCount};
 use hwmodel::cycles::{CycleReport, Hardware};
-use hwmodel::memory::PIXEL_BITS;
 use serde::Serialize;
 
 use super::ModelError;
 use super::area::{self, DesignArea};
-use super::cost::{FrameCost, OuterTraffic, Prices, operations_energy, outer_energy};
+use super::cost::{FrameCost, Prices};
 use crate::measure::CoverageError;
 use crate::rival::{self, Cast, Rival};
 use shiftvox::frame::Frame;
@@ -56,20 +55,8 @@ pub fn price(
     exact: &Frame,
 ) -> Result<RayCasterReport, CostError> {
     let (counter, cycles) = (&cast.counter, &cast.cycles);
-    let pixels = accesses(counter, Memory::Pixel).1;
-    let traffic = OuterTraffic {
-        node_bits: 8 * cycles.node_cache.bytes_in,
-        attribute_bits: 8 * cycles.attribute_cache.bytes_in,
-        pixel_bits: pixels * u64::from(PIXEL_BITS),
-        ..OuterTraffic::default()
-    };
-    let cost = FrameCost {
-        operations: operations_energy(counter, &cast.shifts, prices)?,
-        on_chip: on_chip(cast, rival, hardware, &prices.table)?,
-        outer: outer_energy(&traffic, &prices.table)?,
-        traffic,
-        ..FrameCost::default()
-    };
+    let on_chip = on_chip(cast, rival, hardware, &prices.table)?;
+    let cost = FrameCost::of_work(counter, &cast.shifts, on_chip, cycles, prices)?;
     let area = area::of_rays(cast, rival, hardware, prices)?;
     let pace = (cycles.cycles, hardware.clock_mhz);
     Ok(RayCasterReport {
@@ -85,13 +72,6 @@ pub fn price(
     })
 }
 
-/// Reads and writes of a memory.
-fn accesses(counter: &Counter, memory: Memory) -> (u64, u64) {
-    let by_memory = counter.accesses_by(|cell| cell.memory);
-    let of = by_memory.get(&memory).copied().unwrap_or_default();
-    (of.reads, of.writes)
-}
-
 fn on_chip(
     cast: &Cast,
     rival: &Rival,
@@ -105,13 +85,14 @@ fn on_chip(
         sum.of_bytes(Some(bytes));
         Ok(())
     };
-    let first = cast.counter.records_by_level().next();
+    let counter = &cast.counter;
+    let first = counter.records_by_level().next();
     let rays = first.map_or(0, |(_, rays)| rays);
     let sums = 6 * cast.format.wide().bits();
     let bytes = (cast.steps * u64::from(sums)).div_ceil(8).max(1);
     push("steps of the sums", "sram_read", bytes, sums, rays / 2)?;
     let (nodes, attributes) = (&hardware.node_cache, &hardware.attribute_cache);
-    let (reads, _) = accesses(&cast.counter, Memory::Node);
+    let reads = counter.reads(Memory::Node);
     let (bits, times) = match (&hardware.node_buffer, cast.cycles.node_buffer) {
         (Some(buffer), Some(report)) => {
             let bytes = u64::from(buffer.bytes);
@@ -125,10 +106,10 @@ fn on_chip(
     };
     let bytes = u64::from(nodes.bytes);
     push(Memory::Node.name(), "sram_read", bytes, bits, times)?;
-    let (reads, _) = accesses(&cast.counter, Memory::Attribute);
+    let reads = counter.reads(Memory::Attribute);
     let (bytes, bits) = (u64::from(attributes.bytes), 8 * attributes.entry_bytes);
     push(Memory::Attribute.name(), "sram_read", bytes, bits, reads)?;
-    let (reads, writes) = accesses(&cast.counter, Memory::Stack);
+    let (reads, writes) = (counter.reads(Memory::Stack), counter.writes(Memory::Stack));
     let (bytes, bits) = (rival.stack_bytes(), rival.stack.entry_bits);
     push(Memory::Stack.name(), "sram_read", bytes, bits, reads)?;
     push(Memory::Stack.name(), "sram_write", bytes, bits, writes)?;

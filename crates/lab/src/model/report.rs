@@ -11,9 +11,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::ModelError;
-use super::area::DesignArea;
-use super::clock::ClockCheck;
-use super::cost::{self, FrameCost, Prices};
+use super::cost::{self, Prices};
 use super::design::LightDesign;
 use super::fill_bits;
 use super::frame::{self, Counted};
@@ -49,9 +47,8 @@ pub struct Report {
     /// Samples that differ from the serial machine's.
     pub differing_samples: u64,
     pub coverage_error: CoverageError,
-    pub cost: FrameCost,
-    pub area: DesignArea,
-    pub clock: ClockCheck,
+    #[serde(flatten)]
+    pub light: LightDesign,
     pub clock_says: String,
     /// Of the energies.
     pub technology: Technology,
@@ -76,10 +73,9 @@ impl Report {
     pub fn new(drawn: Drawn<'_>, hardware: Hardware, prices: &Prices) -> Result<Self, ModelError> {
         let (graph, setup, counted) = (drawn.graph, drawn.setup, drawn.counted);
         let (rays, cycles) = (&drawn.ray_caster, &drawn.simulated.cycles);
-        let LightDesign { cost, area, clock } =
-            LightDesign::price(graph, setup, counted, cycles, &hardware, prices)?;
+        let light = LightDesign::price(graph, setup, counted, cycles, &hardware, prices)?;
         let rival = (&rays.cost, &rays.area, &rays.cycles);
-        let comparison = verdict::lines((&cost, &area, cycles), rival, prices);
+        let comparison = verdict::lines((&light.cost, &light.area, cycles), rival, prices);
         let differing_samples = counted.differing(drawn.picture);
         let counter = &counted.counter;
         Ok(Self {
@@ -103,12 +99,10 @@ impl Report {
             same_picture: differing_samples == 0,
             differing_samples,
             coverage_error: CoverageError::between(&counted.frame.voxel, &drawn.exact.voxel),
-            clock_says: clock.sentence(),
+            clock_says: light.clock.sentence(),
             hardware,
             simulated: drawn.simulated,
-            cost,
-            area,
-            clock,
+            light,
             technology: prices.table.technology(),
             technology_says: prices.table.technology().sentence(),
             comparison,

@@ -51,15 +51,12 @@ pub(super) fn cast(
         seed,
     };
     progress.begin("casting the reference", u64::from(setup.height));
-    let mut rows = Vec::with_capacity(setup.height as usize);
-    // In blocks, so that progress is reported from this thread.
-    let block = 4 * rayon::current_num_threads().max(1) as u32;
-    for first in (0..setup.height).step_by(block as usize) {
-        let last = (first + block).min(setup.height);
-        let row = |y: u32| -> Vec<_> { (0..setup.width).map(|x| pixels.pixel(x, y)).collect() };
-        rows.par_extend((first..last).into_par_iter().map(row));
-        progress.advance(u64::from(last - first));
-    }
+    let row = |y: u32| {
+        let row: Vec<([u8; 4], f32)> = (0..setup.width).map(|x| pixels.pixel(x, y)).collect();
+        progress.advance(1);
+        row
+    };
+    let rows: Vec<_> = (0..setup.height).into_par_iter().map(row).collect();
     progress.end();
     let all = rows.concat();
     Reference {

@@ -4,7 +4,7 @@ use hwmodel::Trap;
 
 use shiftvox::frame::Frame;
 use shiftvox::graph::GraphView;
-use shiftvox::machine::{self, Cage, Machine, MachineOptions};
+use shiftvox::machine::{self, Cage, Machine};
 use shiftvox::project::{EngineError, FrameSetup, Stats};
 
 pub(super) trait Subject: Sync {
@@ -15,25 +15,15 @@ pub(super) trait Subject: Sync {
         setup: &FrameSetup,
         frame: &mut Frame,
         most_records: u64,
-    ) -> Result<Option<Stats>, EngineError>;
-
-    fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap>;
-}
-
-pub(super) struct Product;
-
-impl Subject for Product {
-    fn draw(
-        &self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-        most_records: u64,
     ) -> Result<Option<Stats>, EngineError> {
-        Machine::new(MachineOptions::default()).render_within(graph, setup, frame, most_records)
+        Machine::default().render_within(graph, setup, frame, most_records)
     }
 
     fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
         machine::cages_along(setup, path)
     }
 }
+
+pub(super) struct Product;
+
+impl Subject for Product {}

@@ -12,17 +12,8 @@ pub use crate::texture::paint::Paint;
 use shiftvox::graph::PackedNormal;
 use shiftvox::graph::file::Stored;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum OpacityKind {
-    Opaque,
-    /// One number for each side of its surface.
-    Scalar,
-    /// One number for each main direction.
-    Six,
-}
-
-/// Opacities that are stored or used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+/// Opacities that are stored or used. Of both, the lesser counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Opacity {
     /// Every voxel is opaque.
@@ -35,7 +26,7 @@ pub enum Opacity {
 }
 
 /// Bytes of a voxel in each list of a node: place 3, shader 8 or 30, opacities 0, 2 or 5. Three lists have flat shaders,
-/// the next three complex ones. Each three have the kinds of opacities in the order of [`OpacityKind`].
+/// the next three complex ones. Each three have the kinds of opacities in the order of [`Opacity`].
 pub const RECORD_BYTES: [usize; 6] = [11, 13, 16, 33, 35, 38];
 
 /// Bytes of the opacities in a voxel of each list.
@@ -150,7 +141,7 @@ pub struct Voxel {
     pub opacity: [f64; DIRECTIONS],
     /// Opacity over all directions from before its surface, and behind it.
     pub sides: [SideOpacity; 2],
-    pub opacity_kind: OpacityKind,
+    pub stored: Opacity,
 }
 
 fn color_of(bytes: &[u8]) -> DVec3 {
@@ -183,7 +174,7 @@ fn six_bytes(opacity: &[f64; DIRECTIONS], place: [u8; 3]) -> [u8; 3] {
 impl Voxel {
     /// The list that it belongs to.
     pub fn list(&self) -> usize {
-        3 * usize::from(matches!(self.shader, Shader::Complex { .. })) + self.opacity_kind as usize
+        3 * usize::from(matches!(self.shader, Shader::Complex { .. })) + self.stored as usize
     }
 
     pub fn write(&self, out: &mut Vec<u8>) {
@@ -194,18 +185,17 @@ impl Voxel {
         };
         out.extend(normals.iter().flat_map(|&n| normal_bytes(n)));
         out.extend(colors.iter().flat_map(|&c| to_srgb(c)));
-        if self.opacity_kind != OpacityKind::Opaque {
+        if self.stored != Opacity::None {
             out.extend(self.sides.map(SideOpacity::byte));
         }
-        if self.opacity_kind == OpacityKind::Six {
+        if self.stored == Opacity::Six {
             out.extend(six_bytes(&self.opacity, self.place));
         }
     }
 
     /// Reads a record of a list; its bytes may be any.
     pub fn read(list: usize, bytes: &[u8]) -> Self {
-        use OpacityKind::{Opaque, Scalar, Six};
-        let opacity_kind = [Opaque, Scalar, Six][list % 3];
+        let stored = [Opacity::None, Opacity::Scalar, Opacity::Six][list % 3];
         let shader = match list < 3 {
             true => Shader::Flat {
                 normal: normal_of(&bytes[3..5]),
@@ -218,10 +208,10 @@ impl Voxel {
         };
         let bytes_of_opacity = &bytes[RECORD_BYTES[list] - OPACITY_BYTES[list]..];
         let (mut sides, mut opacity) = ([SideOpacity::OPAQUE; 2], [1.0; DIRECTIONS]);
-        if opacity_kind != Opaque {
+        if stored != Opacity::None {
             sides = [0, 1].map(|side| SideOpacity::of(bytes_of_opacity[side]));
         }
-        if opacity_kind == Six {
+        if stored == Opacity::Six {
             let steps = |k: usize| bytes_of_opacity[2 + k / 2] >> (4 * (k % 2)) & 15;
             opacity = std::array::from_fn(|k| f64::from(steps(k)) / SIX_STEPS);
         }
@@ -230,12 +220,13 @@ impl Voxel {
             shader,
             opacity,
             sides,
-            opacity_kind,
+            stored,
         }
     }
 
     pub fn opacity_from(&self, towards_eye: DVec3, mode: Opacity) -> f64 {
-        if mode == Opacity::None || self.opacity_kind == OpacityKind::Opaque {
+        let used = mode.min(self.stored);
+        if used == Opacity::None {
             return 1.0;
         }
         let cosine = self.shader.cosine(towards_eye);
@@ -243,7 +234,7 @@ impl Voxel {
         if steepness(cosine.abs()) >= usize::from(side.solid_from) {
             return 1.0;
         }
-        if mode == Opacity::Scalar || self.opacity_kind == OpacityKind::Scalar {
+        if used == Opacity::Scalar {
             // As of a mist in its cube: through its greater outlines one sees through less of it.
             let outline = towards_eye.abs().element_sum();
             return 1.0 - libm::pow(1.0 - side.scalar, MEAN_OUTLINE / outline);

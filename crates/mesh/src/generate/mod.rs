@@ -3,7 +3,7 @@
 //! +Y is up. The same seed gives the same mesh on every computer: sines are those of `libm`.
 
 mod kinds;
-pub(crate) mod maker;
+mod maker;
 mod thin;
 
 use super::material::to_srgb;

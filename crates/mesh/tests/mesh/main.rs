@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod bad_files;
+mod decimate;
 mod files;
 mod gltf;
 mod opacities;

@@ -43,6 +43,25 @@ pub struct Explored<'a> {
     pub prices: &'a Prices,
 }
 
+impl Explored<'_> {
+    fn camera(&self, point: &Point) -> Camera {
+        let size = point.drawing.size;
+        Camera {
+            width: size.unwrap_or(self.camera.width),
+            height: size.unwrap_or(self.camera.height),
+            ..*self.camera
+        }
+    }
+
+    fn setup(&self, point: &Point) -> OrReason<FrameSetup> {
+        let (camera, options) = (self.camera(point), point.drawing.options(self.options));
+        let Graph {
+            placement, depth, ..
+        } = self.graph;
+        FrameSetup::new(&camera, placement, *depth, &options).map_err(|error| error.to_string())
+    }
+}
+
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "outcome", rename_all = "snake_case")]
 pub enum PointOutcome {
@@ -113,10 +132,8 @@ struct Shared<'a> {
     of: Explored<'a>,
     /// By side of the picture.
     exact: BTreeMap<Option<u32>, Frame>,
-    /// By drawing settings.
-    setups: BTreeMap<String, OrReason<FrameSetup>>,
-    /// The machine's counts, by [`machine_key`].
-    counted: BTreeMap<String, OrReason<Counted>>,
+    /// Set-ups, and the machine's counts, by [`machine_key`].
+    counted: BTreeMap<String, OrReason<(FrameSetup, Counted)>>,
     /// Rays, by [`Shared::ray_key`].
     rays: BTreeMap<String, Cast>,
 }
@@ -184,7 +201,6 @@ impl<'a> Shared<'a> {
         let mut shared = Self {
             of,
             exact: BTreeMap::new(),
-            setups: BTreeMap::new(),
             counted: BTreeMap::new(),
             rays: BTreeMap::new(),
         };
@@ -192,39 +208,26 @@ impl<'a> Shared<'a> {
         let mut machines = BTreeMap::<String, &Point>::new();
         let mut casts = BTreeMap::<String, &Point>::new();
         for point in points {
-            let size = point.drawing.size;
-            let camera = Camera {
-                width: size.unwrap_or(of.camera.width),
-                height: size.unwrap_or(of.camera.height),
-                ..*of.camera
-            };
-            let options = point.drawing.options(of.options);
-            if let Entry::Vacant(place) = shared.exact.entry(size) {
-                let setup = frame::exact_setup(of.graph, &camera, of.options.aa_log2)?;
+            if let Entry::Vacant(place) = shared.exact.entry(point.drawing.size) {
+                let setup = frame::exact_setup(of.graph, &of.camera(point), of.options.aa_log2)?;
                 place.insert(frame::reference(&of.graph.view(), &setup)?);
             }
-            let setup = || {
-                let placement = &of.graph.placement;
-                FrameSetup::new(&camera, placement, of.graph.depth, &options)
-                    .map_err(|error| error.to_string())
-            };
-            let key = format!("{:?}", point.drawing);
-            shared.setups.entry(key).or_insert_with(setup);
             machines.entry(machine_key(point)).or_insert(point);
             casts.entry(shared.ray_key(point)).or_insert(point);
         }
         let count = |(key, point): (String, &Point)| {
-            let counted = shared.setup(point).and_then(|setup| {
-                frame::count(of.graph, setup, point.hardware.organisation, of.overflow)
-                    .map_err(|error| error.to_string())
+            let counted = of.setup(point).and_then(|setup| {
+                let organisation = point.hardware.organisation;
+                let counted = frame::count(of.graph, &setup, organisation, of.overflow);
+                Ok((setup, counted.map_err(|error| error.to_string())?))
             });
             (key, counted)
         };
         let counted = machines.into_par_iter().map(count).collect();
         let cast = |(key, point): (String, &Point)| {
-            let setup = shared.setup(point).ok()?;
+            let setup = of.setup(point).ok()?;
             let hardware = of.rival.beside(&point.hardware);
-            Some(rival::cast(of.graph, setup, of.rival, &hardware).map(|cast| (key, cast)))
+            Some(rival::cast(of.graph, &setup, of.rival, &hardware).map(|cast| (key, cast)))
         };
         let rays = casts.into_par_iter().filter_map(cast);
         let rays = rays.collect::<Result<_, ModelError>>()?;
@@ -243,15 +246,10 @@ impl<'a> Shared<'a> {
         format!("{:?} {hardware:?}", point.drawing)
     }
 
-    fn setup(&self, point: &Point) -> OrReason<&FrameSetup> {
-        let setup = self.setups[&format!("{:?}", point.drawing)].as_ref();
-        setup.map_err(String::clone)
-    }
-
     /// A point's frame as the serial machine draws it.
-    fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Counted)> {
+    fn drawn(&self, point: &Point) -> OrReason<&(FrameSetup, Counted)> {
         let counted = self.counted[&machine_key(point)].as_ref();
-        Ok((self.setup(point)?, counted.map_err(String::clone)?))
+        counted.map_err(String::clone)
     }
 
     /// A frame on a point's hardware, and the samples that differ from the serial machine's.
@@ -287,9 +285,6 @@ impl<'a> Shared<'a> {
         let beside = self.of.rival.beside(hardware);
         let rays = ray_caster::price(cast, (self.of.rival, &beside), prices, exact)?;
         let error = CoverageError::between(&counted.frame.voxel, &exact.voxel);
-        let accesses = counted.counter.accesses_by(|cell| cell.memory);
-        let of = |memory: Memory| accesses.get(&memory).copied().unwrap_or_default();
-        let fill = of(Memory::FillVector);
         let counter = &counted.counter;
         Ok(PointOutcome::Drawn(Box::new(PointFigures {
             cycles: cycles.cycles,
@@ -307,9 +302,10 @@ impl<'a> Shared<'a> {
                 divide_steps: counter.ops_of(OpClass::DivideStep),
                 record_bits: counted.record_bits(),
                 deepest_stack: stat(&counted.stats, "deepest_stack"),
-                node_reads: of(Memory::Node).reads,
+                node_reads: counter.reads(Memory::Node),
                 node_misses: cycles.node_cache.misses,
-                fill_accesses: fill.reads + fill.writes,
+                fill_accesses: counter.reads(Memory::FillVector)
+                    + counter.writes(Memory::FillVector),
                 fill_bits: fill_bits::fill_store_bits(setup, hardware),
                 extra: error.extra,
                 missing: error.missing,

@@ -1,4 +1,4 @@
-//! Faults of rules that the rows must detect. Those of single operators are in `crates/cli/tests/rtl/mutants.rs`.
+//! Faults of rules that the rows must detect. Those of single operators are in `crates/cli/tests/rtl/faults.rs`.
 
 use super::replay::Rules;
 

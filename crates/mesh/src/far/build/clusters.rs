@@ -49,17 +49,13 @@ pub(super) struct Part {
 
 impl<'s> Occluders<'s> {
     /// `within`: a file, and the most bytes in memory beside a cluster per thread.
-    pub(super) fn new<C, I>(
+    pub(super) fn new(
         parts: Vec<Part>,
-        corners: C,
+        corners: impl Fn(usize) -> [DVec3; 3] + Sync,
         stops: Option<&'s Stops<'s>>,
         within: Option<(File, u64)>,
-    ) -> io::Result<Self>
-    where
-        C: Fn(Range<usize>) -> I + Sync,
-        I: Iterator<Item = [DVec3; 3]>,
-    {
-        let make = |part: &Part| Cluster::new(corners(part.triangles.clone()));
+    ) -> io::Result<Self> {
+        let make = |part: &Part| Cluster::new(part.triangles.clone().map(&corners));
         let held = match within {
             None => Held::All(parts.par_iter().map(|part| Arc::new(make(part))).collect()),
             Some((file, most)) => {

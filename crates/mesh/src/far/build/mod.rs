@@ -24,7 +24,6 @@ mod touch;
 use std::collections::HashMap;
 use std::fs::{File, TryLockError};
 use std::io::{self, Write};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -206,7 +205,7 @@ pub fn build_outside(
         .clusters
         .map(|most| Ok((temporary_file(folder)?, most)));
     let within = within.transpose()?;
-    let corners = |own: Range<usize>| own.map(|number| triangles.corners(number));
+    let corners = |number: usize| triangles.corners(number);
     let parts = parts(&branches, |point| triangles.place(point));
     let stops = |number: usize, point: DVec3| triangles.stops(number, point);
     let is_clear = (0..surface.len()).any(|number| !surface.is_opaque(number));

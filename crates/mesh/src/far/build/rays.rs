@@ -219,8 +219,6 @@ fn meet(&[corner, to_second, to_third]: &Corners, ray: &Ray) -> (f32, bool) {
 
 #[cfg(test)]
 mod tests {
-    use std::ops::Range;
-
     use shiftvox::split_mix::SplitMix;
 
     use super::super::clusters::{Occluders, Part};
@@ -286,7 +284,7 @@ mod tests {
                     triangles: triangles.len() * part / parts..triangles.len() * (part + 1) / parts,
                     around,
                 };
-                let corners = |own: Range<usize>| triangles[own].iter().copied();
+                let corners = |number: usize| triangles[number];
                 let within = within.map(|most| (tempfile::tempfile().unwrap(), most));
                 let parts = (0..parts).map(part).collect();
                 let occluders = Occluders::new(parts, corners, None, within).unwrap();

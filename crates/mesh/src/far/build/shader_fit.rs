@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::count::{Counted, Found, Seen, SurfaceSample};
 use crate::far::blend::{DIRECTIONS, Fit, by_squares};
-use crate::far::record::{Opacity, OpacityKind, STEEPNESSES, Shader, SideOpacity, Voxel};
+use crate::far::record::{Opacity, STEEPNESSES, Shader, SideOpacity, Voxel};
 
 /// Beside a colour's error: both are 0 to 1.
 const NORMAL_WEIGHT: f64 = 0.25;
@@ -78,7 +78,7 @@ pub(super) fn fit(seen: &Seen, shader: Shader, most: Opacity) -> Voxel {
         shader,
         opacity: [1.0; DIRECTIONS],
         sides: [SideOpacity::OPAQUE; 2],
-        opacity_kind: OpacityKind::Opaque,
+        stored: Opacity::None,
     };
     let is_crossed = seen.found.iter().flatten().any(|found| found.probes > 0);
     let sides = [0, 1].map(|side| {
@@ -108,11 +108,7 @@ pub(super) fn fit(seen: &Seen, shader: Shader, most: Opacity) -> Voxel {
         .sum();
     let is_alike = square <= alike * rest.weight;
     Voxel {
-        opacity_kind: if most == Opacity::Scalar || is_alike {
-            OpacityKind::Scalar
-        } else {
-            OpacityKind::Six
-        },
+        stored: if is_alike { Opacity::Scalar } else { most },
         sides: sides.map(|(_, solid, scalar)| SideOpacity {
             scalar,
             solid_from: solid as u8,

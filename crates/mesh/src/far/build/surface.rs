@@ -284,13 +284,8 @@ impl<'s> Surfaces<'s> {
         let tinted: Option<Vec<u32>> = tinted.collect();
         let stored = self.triangles.stored(taken.iter().copied(), None);
         let mesh = mesh_of(&stored, tinted);
-        let how = Decimation {
-            triangles: 0,
-            error: Some(error),
-            prunes: false,
-        };
         let shared = |p: [f64; 3]| self.parts.shared(own, p.map(|c| c as f32));
-        let few = decimate_between(&mesh, &how, shared)?;
+        let few = decimate_between(&mesh, Decimation::Error(error), shared)?;
         Ok(few.map_or(Vec::new(), |mesh| triangles_of(&mesh)))
     }
 }

@@ -1,8 +1,10 @@
 //! Keeps unpacked data of nodes to a budget by the clock algorithm, which spares nodes once that were used.
 
 use std::collections::VecDeque;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+
+use crate::list::lock;
 
 #[derive(Debug)]
 pub(super) struct Budget {
@@ -43,7 +45,7 @@ impl Budget {
         if self.is_here[node].load(Ordering::Relaxed) {
             return;
         }
-        let mut clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut clock = lock(&self.clock);
         if self.is_here[node].swap(true, Ordering::Relaxed) {
             return;
         }
@@ -66,8 +68,7 @@ impl Budget {
     }
 
     pub(super) fn resident(&self) -> Resident {
-        let clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
-        clock.resident
+        lock(&self.clock).resident
     }
 }
 

@@ -111,10 +111,8 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
         ),
         (node.hits <= node.rays, "no more hits than rays"),
     ];
-    match rules.into_iter().find(|(holds, _)| !holds) {
-        None => Ok(()),
-        Some((_, expected)) => Err(expected),
-    }
+    let broken = rules.into_iter().find(|(holds, _)| !holds);
+    broken.map_or(Ok(()), |(_, expected)| Err(expected))
 }
 
 fn check_children(nodes: &[Node], number: usize) -> Result<(), &'static str> {

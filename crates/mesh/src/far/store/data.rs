@@ -1,7 +1,5 @@
 //! The data of a node in memory: unpacked and found sound.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
 use crate::far::record::{LeafTriangle, Node, RECORD_BYTES};
 
 /// Triangles, and of an inner node voxels.
@@ -45,14 +43,5 @@ impl NodeData {
 
     pub(super) fn bytes(&self) -> u64 {
         (self.records.len() + size_of_val(&self.triangles[..])) as u64
-    }
-}
-
-#[derive(Debug, Default)]
-pub(super) struct Slot(Mutex<Option<Arc<NodeData>>>);
-
-impl Slot {
-    pub(super) fn lock(&self) -> MutexGuard<'_, Option<Arc<NodeData>>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

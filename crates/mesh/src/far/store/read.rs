@@ -3,7 +3,7 @@
 use std::io;
 use std::mem::offset_of;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use glam::DVec3;
 use xxhash_rust::xxh3::xxh3_64;
@@ -11,13 +11,14 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::FarError;
 use super::budget::{Budget, Resident};
 use super::check::check;
-use super::data::{NodeData, Slot};
+use super::data::NodeData;
 use super::format::{BLENDS, FIELDS, FORMAT, Fields, layout};
 use super::pack::unpack;
 use crate::Texture;
 use crate::far::FarSettings;
 use crate::far::record::Node;
 use crate::geometry::point;
+use crate::list::lock;
 use crate::texture::stored;
 use shiftvox::graph::MeshBox;
 use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, range};
@@ -40,7 +41,8 @@ pub struct FarFile {
     /// Voxels and triangles are numbered from node to node.
     pub(in crate::far) first_voxel: Vec<u32>,
     pub(in crate::far) first_triangle: Vec<u32>,
-    data: Vec<Slot>,
+    /// Of the nodes, where it is in memory.
+    data: Vec<Mutex<Option<Arc<NodeData>>>>,
     budget: Option<Budget>,
 }
 
@@ -114,7 +116,7 @@ impl FarFile {
             textures: OnceLock::new(),
             first_voxel: first_of(&nodes, |node| node.voxels() as u32),
             first_triangle: first_of(&nodes, |node| node.surface),
-            data: nodes.iter().map(|_| Slot::default()).collect(),
+            data: nodes.iter().map(|_| Mutex::default()).collect(),
             nodes,
             budget: None,
             bytes,
@@ -165,18 +167,18 @@ impl FarFile {
 
     /// A node's voxels and triangles. An error if they are not as they were written.
     pub fn data(&self, number: usize) -> Result<Arc<NodeData>, FarError> {
-        let here = self.data[number].lock().clone();
+        let here = lock(&self.data[number]).clone();
         let data = match here {
             Some(data) => data,
             None => {
                 let data = Arc::new(self.unpacked(number)?);
-                *self.data[number].lock() = Some(Arc::clone(&data));
+                *lock(&self.data[number]) = Some(Arc::clone(&data));
                 data
             }
         };
         if let Some(budget) = &self.budget {
             budget.touch(number, data.bytes(), |other| {
-                *self.data[other].lock() = None
+                *lock(&self.data[other]) = None
             });
         }
         Ok(data)

@@ -14,7 +14,6 @@ use super::store::FarFile;
 use crate::material::to_light;
 use crate::raster::{Light, RasterCamera, RasterPicture, mixed};
 use crate::view_error::ViewError;
-use cut::Cut;
 use opaque::Opaque;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,14 +76,9 @@ pub fn draw(
     let across = options.samples_across.clamp(1, MOST_SAMPLES_ACROSS);
     let (pixels, view) = (view, &samples::finer(view, across));
     let mut counts = FarCounts::default();
-    let cut = Cut {
-        file,
-        view: *view,
-        // From here on a pixel is a sample.
-        voxel_px: options.voxel_px * f64::from(across),
-        is_fine: across >= FINE,
-    };
-    let nodes = cut.nodes(&mut counts);
+    // From here on a pixel is a sample.
+    let voxel_px = options.voxel_px * f64::from(across);
+    let nodes = cut::nodes(file, view, voxel_px, across >= FINE, &mut counts);
     let opaque = Opaque::draw(file, view, options, &nodes, &mut counts)?;
     for node in &nodes {
         let node = &file.nodes()[node.number];

@@ -24,10 +24,8 @@ pub(super) fn check_entry(entry: &GridEntry) -> Result<(), &'static str> {
             "fewer than 2^32 listed primitives and sub-textures",
         ),
     ];
-    match rules.into_iter().find(|(holds, _)| !holds) {
-        None => Ok(()),
-        Some((_, expected)) => Err(expected),
-    }
+    let broken = rules.into_iter().find(|(holds, _)| !holds);
+    broken.map_or(Ok(()), |(_, expected)| Err(expected))
 }
 
 /// Checks voxels and lists against each other and the number of primitives. Errors: section, record, expected value.
