@@ -35,7 +35,7 @@ pub(super) fn run(console: &Console) -> Result<(), CliError> {
         ..DrawFlags::default()
     };
     let draw_args = flags.draw_args(None, true);
-    let mut drawing = methods::of_graph(&scene, &draw_args, &Stop::default())?;
+    let mut drawing = methods::of_graph(&scene.graph, scene.up, &draw_args, &Stop::default())?;
     let camera = flags
         .camera
         .camera(&drawing.bounds(), scene.up, (SIDE, SIDE), 0.0);

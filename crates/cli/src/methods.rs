@@ -12,9 +12,9 @@ use super::error::{CliError, Kind};
 use super::fatal_signals;
 use super::scenes::{self, Scene};
 use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, Shown, milliseconds_since};
-use shiftvox::graph::Crop;
+use shiftvox::graph::{Crop, Graph, Silent};
 use shiftvox::picture::{self, Buffer};
-use shiftvox::project::{Camera, Stop};
+use shiftvox::project::{Camera, Stop, Up};
 use shiftvox::scene::{FileKind, OpenOptions, Source};
 use shiftvox_mesh::drawing::{FarStyle, TexturedStyle, of_far, of_textured};
 use shiftvox_mesh::far::FarFile;
@@ -96,11 +96,13 @@ const METHODS: [FileMethod; 2] = [
 pub(super) struct Opened {
     pub(super) engine: EngineName,
     pub(super) load_ms: f64,
+    /// Whether all of the file was checked. Methods of meshes check their data as they read it.
+    pub(super) is_verified: bool,
     content: Content,
 }
 
 enum Content {
-    Graph(Box<Scene>),
+    Graph(Box<Graph>, Up),
     Far(FarFile),
     Textured(TexturedFile),
 }
@@ -125,19 +127,16 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
         }
         let scene_args = args.engine.rules.scene_args(args.scene);
         let verify_up_to = OpenOptions::default().verify_up_to;
-        let scene =
-            scenes::open_source(source?, name, &scene_args, verify_up_to, started, console)?;
-        return Ok(Opened {
-            engine: asked.unwrap_or_default(),
-            load_ms: scene.load_ms,
-            content: Content::Graph(Box::new(scene)),
-        });
+        let source = source?;
+        let scene = scenes::open_source(source, name, &scene_args, verify_up_to, started, console)?;
+        return Ok(Opened::of_scene(scene, asked));
     };
     method.check(name, kind, args)?;
     let content = (method.open)(Path::new(name), args)?;
     Ok(Opened {
         engine: method.engine,
         load_ms: milliseconds_since(started),
+        is_verified: true,
         content,
     })
 }
@@ -150,11 +149,7 @@ pub(super) fn open_bytes(
 ) -> Result<Opened, CliError> {
     args.engine.check_of_voxels().map_err(CliError::usage)?;
     let scene = scenes::open_bytes(name, bytes, args.scene)?;
-    Ok(Opened {
-        engine: args.engine.engine.unwrap_or_default(),
-        load_ms: scene.load_ms,
-        content: Content::Graph(Box::new(scene)),
-    })
+    Ok(Opened::of_scene(scene, args.engine.engine))
 }
 
 fn check_memory(args: &DrawArgs<'_>) -> Result<(), CliError> {
@@ -206,46 +201,41 @@ impl FileMethod {
 }
 
 impl Opened {
-    pub(super) fn graph(&self) -> Option<&shiftvox::graph::Graph> {
+    fn of_scene(scene: Scene, engine: Option<EngineName>) -> Self {
+        Self {
+            engine: engine.unwrap_or_default(),
+            load_ms: scene.load_ms,
+            is_verified: scene.is_verified,
+            content: Content::Graph(Box::new(scene.graph), scene.up),
+        }
+    }
+
+    pub(super) fn graph(&self) -> Option<&Graph> {
         match &self.content {
-            Content::Graph(scene) => Some(&scene.graph),
+            Content::Graph(graph, _) => Some(graph),
             Content::Far(_) | Content::Textured(_) => None,
         }
     }
 
     /// The part of a scene of voxels within a box.
-    pub(super) fn cropped(&self, crop: &Crop) -> Result<Self, CliError> {
-        let Content::Graph(scene) = &self.content else {
+    pub(super) fn cropped(&self, name: &str, crop: &Crop) -> Result<Self, CliError> {
+        let Content::Graph(graph, up) = &self.content else {
             return Err(CliError::usage(
                 "--crop is for voxels, and this scene has none",
             ));
         };
-        let graph = scene.cropped(crop, &shiftvox::graph::Silent)?;
+        let part = scenes::cropped(graph, name, crop, &Silent)?;
         Ok(Self {
-            engine: self.engine,
-            load_ms: 0.0,
-            content: Content::Graph(Box::new(scene.with(graph))),
+            content: Content::Graph(Box::new(part), *up),
+            ..*self
         })
     }
 
     /// Rejects flags that the scene's method does not follow, as [`open`] does.
     pub(super) fn check(&self, name: &str, args: &DrawArgs<'_>) -> Result<(), CliError> {
-        let of_file = match &self.content {
-            Content::Graph(_) => None,
-            Content::Far(_) => Some(FileKind::Far),
-            Content::Textured(_) => Some(FileKind::Tvx),
-        };
-        match METHODS.iter().find(|method| Some(method.file) == of_file) {
-            Some(method) => method.check(name, of_file, args),
+        match METHODS.iter().find(|method| method.engine == self.engine) {
+            Some(method) => method.check(name, Some(method.file), args),
             None => args.engine.check_of_voxels().map_err(CliError::usage),
-        }
-    }
-
-    /// Whether all of the file was checked. Methods of meshes check their data as they read it.
-    pub(super) fn is_verified(&self) -> bool {
-        match &self.content {
-            Content::Graph(scene) => scene.is_verified,
-            Content::Far(_) | Content::Textured(_) => true,
         }
     }
 
@@ -259,7 +249,7 @@ impl Opened {
         let (shading, background) = (picture.shade, picture.background.unwrap_or_default());
         let aa_log2 = picture.aa_log2();
         Ok(match &self.content {
-            Content::Graph(scene) => Box::new(of_graph(scene, args, stop)?),
+            Content::Graph(graph, up) => Box::new(of_graph(graph, *up, args, stop)?),
             Content::Far(file) => {
                 let style = FarStyle {
                     voxel_px: args.engine.rules.lod.unwrap_or(1.0),
@@ -299,11 +289,12 @@ pub(super) fn hash(shown: &Shown<'_>, is_hashed: bool) -> Result<Option<String>,
     Ok(hash.transpose()?)
 }
 
-pub(super) fn of_graph<'s>(
-    scene: &'s Scene,
+pub(super) fn of_graph<'g>(
+    graph: &'g Graph,
+    up: Up,
     args: &DrawArgs<'_>,
     stop: &Stop,
-) -> Result<GraphDrawing<'s>, CliError> {
+) -> Result<GraphDrawing<'g>, CliError> {
     let style = GraphStyle {
         options: args.engine.rules.options(args.picture.aa_log2()),
         shading: args.picture.shade,
@@ -312,7 +303,7 @@ pub(super) fn of_graph<'s>(
         is_hashed: args.is_hashed,
     };
     let maker = engines::maker(args.engine, stop)?;
-    Ok(GraphDrawing::new(&scene.graph, scene.up, style, maker))
+    Ok(GraphDrawing::new(graph, up, style, maker))
 }
 
 fn erosion(args: &EngineArgs) -> Result<Erosion, CliError> {

@@ -54,7 +54,7 @@ pub(super) fn open_source(
     let opened = scene::open_source(source, &options.voxels, &options.mesh, console.progress())?;
     let mut scene = ready(opened, name, args.mesh_up, started);
     if let Some(crop) = &args.crop {
-        scene.graph = scene.cropped(crop, console.progress())?;
+        scene.graph = cropped(&scene.graph, name, crop, console.progress())?;
     }
     if !scene.is_verified {
         console.note(format!(
@@ -87,34 +87,21 @@ pub(super) fn open_source(
     Ok(scene)
 }
 
-impl Scene {
-    /// The same scene with another graph.
-    pub(super) fn with(&self, graph: Graph) -> Self {
-        let (source, format) = (self.source.clone(), self.format.clone());
-        let (mesh, warnings) = (self.mesh.clone(), self.warnings.clone());
-        Self {
-            graph,
-            source,
-            format,
-            mesh,
-            warnings,
-            ..*self
-        }
+/// The part of a scene within a box.
+pub(super) fn cropped(
+    graph: &Graph,
+    name: &str,
+    crop: &Crop,
+    progress: &dyn Progress,
+) -> Result<Graph, CliError> {
+    if !graph.opacity.is_empty() {
+        let reason = "--crop keeps no opacities: leave out --opacities, or alpha";
+        return Err(CliError::usage(reason));
     }
-
-    /// The part within a box.
-    pub(super) fn cropped(&self, crop: &Crop, progress: &dyn Progress) -> Result<Graph, CliError> {
-        let (graph, name) = (&self.graph, &self.source);
-        if !graph.opacity.is_empty() {
-            let reason = "--crop keeps no opacities: leave out --opacities, or alpha";
-            return Err(CliError::usage(reason));
-        }
-        let part = graph.cropped(crop, progress);
-        part.map_err(|error| match error {
-            BuildError::Empty => CliError::usage(format!("{name}: --crop leaves no voxel")),
-            error => CliError::new(Kind::Limit, format!("{name}: {error}")),
-        })
-    }
+    graph.cropped(crop, progress).map_err(|error| match error {
+        BuildError::Empty => CliError::usage(format!("{name}: --crop leaves no voxel")),
+        error => CliError::new(Kind::Limit, format!("{name}: {error}")),
+    })
 }
 
 /// As [`open_source`], of voxels in memory.

@@ -137,7 +137,7 @@ impl Listed {
         {
             return Ok(Chosen::Part(Arc::clone(part)));
         }
-        let part = Arc::new(whole.cropped(crop)?);
+        let part = Arc::new(whole.cropped(&self.name, crop)?);
         *kept = Some((crop.clone(), Arc::clone(&part)));
         Ok(Chosen::Part(part))
     }
