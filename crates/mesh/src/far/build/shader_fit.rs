@@ -23,6 +23,8 @@ const DOUBT: f64 = 0.5;
 /// A side is solid where at most this share of its probes leaves the layer, if there are so many ([`solid_from`]).
 const MOST_PASSED: f64 = 0.05;
 const LEAST_PROBES: u32 = 4;
+/// A back of a body that only grazing probes reach lets more of them pass.
+const MOST_GRAZING_PASSED: f64 = 0.85;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ShaderFit {
@@ -47,10 +49,11 @@ pub(super) fn fit_shader(samples: &[SurfaceSample], normal: DVec3) -> ShaderFit 
 }
 
 /// The steepness from which on a side is solid; all of a side that nothing looks upon, as it is hidden. Chance gives some
-/// voxels of a sheet few probes that are not grazing. So the other side's count too, where it lets none pass either, and
-/// if all of both sides are stopped, fewer are enough.
+/// sides of a sheet few probes that are not grazing. So the other side's count too, where it lets none pass either. If all
+/// of both sides are stopped, and some of the grazing ones, fewer are enough.
 fn solid_from(side: &[Found; STEEPNESSES], other: &[Found; STEEPNESSES]) -> usize {
-    let lets_pass = |found: &Found| found.passed > MOST_PASSED * (found.passed + found.stopped);
+    let lets = |found: &Found, most: f64| found.passed > most * (found.passed + found.stopped);
+    let lets_pass = |found: &Found| lets(found, MOST_PASSED);
     let (mut solid, mut own, mut both) = (STEEPNESSES, 0, 0);
     let mut counts_other = true;
     for (steepness, (found, other)) in side.iter().zip(other).enumerate().rev() {
@@ -62,8 +65,8 @@ fn solid_from(side: &[Found; STEEPNESSES], other: &[Found; STEEPNESSES]) -> usiz
         both += found.probes + if counts_other { other.probes } else { 0 };
         let is_enough = match steepness {
             0 => own >= LEAST_PROBES,
-            1 if counts_other => both > 0,
-            _ => both >= LEAST_PROBES,
+            1 if counts_other && !lets(&side[0], MOST_GRAZING_PASSED) => both > 0,
+            _ => own > 0 && both >= LEAST_PROBES,
         };
         if is_enough {
             solid = steepness;
