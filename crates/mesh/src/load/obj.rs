@@ -55,7 +55,7 @@ struct File {
     by_name: HashMap<String, usize>,
     current: usize,
     libraries: usize,
-    /// Lines and points.
+    /// Lines, points, curves and surfaces.
     wires: u64,
 }
 
@@ -144,7 +144,7 @@ impl File {
             }
             "usemtl" if rest().is_empty() => Err(wrong("usemtl", "a material's name"))?,
             "usemtl" => self.current = self.by_name.get(rest()).copied().unwrap_or(0),
-            "l" | "p" => self.wires += 1,
+            "l" | "p" | "curv" | "curv2" | "surf" => self.wires += 1,
             "mtllib" => self.library(rest(), beside, mtl_colors, builder),
             _ => {}
         }
@@ -309,7 +309,7 @@ impl File {
         }
         if self.wires > 0 {
             builder.warn(format!(
-                "{} lines and points (l, p) were passed over",
+                "{} lines, points and curves (l, p, curv, surf) were passed over",
                 self.wires
             ));
         }

@@ -136,7 +136,12 @@ pub(super) fn read(
                 let material = textured.first().copied().flatten().unwrap_or(material);
                 add_strips(&row, &kept, material, builder)
             })?,
-            _ => file.skip(element)?,
+            _ => {
+                if element.name == b"material" {
+                    builder.warn("materials were passed over");
+                }
+                file.skip(element)?;
+            }
         }
     }
     if has_opacities {

@@ -34,11 +34,16 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Proble
         let _ = builder.triangle(corners, None, 0);
     };
     if is_binary_stl(bytes, bytes.len() as u64) {
-        for triangle in bytes[HEADER..].as_chunks::<TRIANGLE>().0 {
+        let triangles = bytes[HEADER..].as_chunks::<TRIANGLE>().0;
+        for triangle in triangles {
             // The normal comes first.
             let coordinates = triangle[12..48].as_chunks::<4>().0;
             let coordinate = |k: usize| f32::from_le_bytes(coordinates[k]);
             add([0, 3, 6].map(|i| [i, i + 1, i + 2].map(coordinate)));
+        }
+        // Programs do not agree on what these two bytes are.
+        if triangles.iter().any(|triangle| triangle[48..] != [0, 0]) {
+            builder.warn("attributes of triangles, which may be colours, were passed over");
         }
         return Ok(());
     }

@@ -72,7 +72,7 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
             "none.mtl cannot be read",
             "1 triangles have no material",
             "1 of 6 triangles of a material with opacity 0",
-            "2 lines and points",
+            "2 lines, points and curves",
             "a b.mtl: 2 materials emit light",
         ];
         has(mesh.warnings(), &warnings);
@@ -100,6 +100,9 @@ fn obj_files_may_have_coloured_vertices_and_odd_lines() {
     has(mesh.warnings(), &["taken as 0 to 255"]);
     let text = b"v 0 0 0\rv 1 0 0\rv 1 1 0\rf 1 2 3\r";
     assert_eq!(load(text, MeshFormat::Obj).unwrap().triangles().len(), 1);
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\ncurv 0 1 1 2\nl 1 2\n";
+    let mesh = load(text.as_bytes(), MeshFormat::Obj).unwrap();
+    has(mesh.warnings(), &["2 lines, points and curves"]);
     // Byte order marks and continued lines.
     let text = "\u{feff}v 0 0 0\nv 1 \\\n0 0\nmtllib a b.mtl\n# C:\\models\\\nusemtl red\nv 0 1 0\n\
         f 1 \\\r\n2 \\\r\n3\r\n";
@@ -170,6 +173,23 @@ fn text_stl_files_have_several_solids() {
 }
 
 /// Also where all digits of a line are those of whole numbers.
+#[test]
+fn colours_that_are_not_read_are_told() {
+    let mut stl = squares()
+        .into_iter()
+        .find(|(name, ..)| *name == "stl binary")
+        .unwrap()
+        .2;
+    stl[84 + 48] = 1;
+    let mesh = load(&stl, MeshFormat::Stl).unwrap();
+    has(mesh.warnings(), &["attributes of triangles"]);
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\nproperty int z\nelement material 1\n\
+        property int ambient_red\nelement face 1\nproperty list int int vertex_indices\nend_header\n\
+        0 0 0\n1 0 0\n1 1 0\n9\n3 0 1 2\n";
+    let mesh = load(ply.as_bytes(), MeshFormat::Ply).unwrap();
+    has(mesh.warnings(), &["materials were passed over"]);
+}
+
 #[test]
 fn real_colours_of_ply_files_are_shares() {
     let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nCOLORS\

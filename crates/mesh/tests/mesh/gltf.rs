@@ -185,7 +185,9 @@ fn what_is_not_drawn_is_warned_of() {
     assert_eq!(mesh_of(&json).warnings().len(), 3);
     json["accessors"][1]["count"] = 5.into();
     json["scene"] = 7.into();
+    json["meshes"].as_array_mut().unwrap().push(json!({}));
     let warnings = [
+        "1 meshes are in no node that is shown",
         "the default scene 7 is none of 1; all nodes are drawn",
         "2 primitives end within a triangle, which was passed over",
     ];

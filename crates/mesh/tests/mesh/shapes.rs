@@ -130,7 +130,8 @@ pub fn data_uri(bytes: &[u8]) -> String {
 
 /// A binary file of a document and its buffer.
 pub fn glb(json: &str, buffer: &[u8]) -> Vec<u8> {
-    let json = json.to_owned() + &" ".repeat(json.len().wrapping_neg() % 4);
+    // As some programs fill up.
+    let json = json.to_owned() + &"\0".repeat(json.len().wrapping_neg() % 4);
     let word = |n: usize| (n as u32).to_le_bytes();
     let length = word(12 + 8 + json.len() + 8 + buffer.len());
     let mut bytes = [*b"glTF", word(2), length].concat();

@@ -139,7 +139,16 @@ impl Material {
     }
 
     pub(super) fn transmits_light(&self) -> bool {
-        self.extensions.transmission["transmissionFactor"].as_f64() > Some(0.0)
+        let MaterialExtensions {
+            transmission,
+            diffuse_transmission,
+            ..
+        } = &self.extensions;
+        let factors = [
+            &transmission["transmissionFactor"],
+            &diffuse_transmission["diffuseTransmissionFactor"],
+        ];
+        factors.iter().any(|factor| factor.as_f64() > Some(0.0))
     }
 }
 
@@ -150,6 +159,8 @@ struct MaterialExtensions {
     specular_glossiness: Option<Pbr>,
     #[serde(rename = "KHR_materials_transmission")]
     transmission: Value,
+    #[serde(rename = "KHR_materials_diffuse_transmission")]
+    diffuse_transmission: Value,
 }
 
 #[derive(Debug, Default, Deserialize)]

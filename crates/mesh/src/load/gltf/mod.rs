@@ -76,7 +76,11 @@ pub(super) fn read_binary(
             ));
         };
         match kind {
-            JSON if json.is_none() => json = Some((content, begin)),
+            JSON if json.is_none() => {
+                // Some programs fill up with zeros in place of spaces.
+                let end = content.iter().rposition(|&byte| byte != 0);
+                json = Some((&content[..end.map_or(0, |last| last + 1)], begin));
+            }
             BIN if binary.is_none() => binary = Some(content),
             _ => {}
         }

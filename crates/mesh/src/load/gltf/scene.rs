@@ -84,6 +84,7 @@ impl<'d> Reader<'d> {
         }
         let shown = self.shown()?;
         self.check_size(&shown, builder)?;
+        let meshes: HashSet<usize> = shown.iter().map(|&(mesh, _)| mesh).collect();
         for (number, placed) in shown {
             for primitive in &self.mesh(number)?.primitives {
                 self.primitive(number, primitive, placed, builder)?;
@@ -104,11 +105,15 @@ impl<'d> Reader<'d> {
             ),
             (
                 count(FileMaterial::transmits_light),
-                "materials transmit light (KHR_materials_transmission), which is not drawn",
+                "materials transmit light (KHR_materials_*transmission), which is not drawn",
             ),
             (
                 self.without_uvs,
                 "primitives have a texture, but no texture coordinates",
+            ),
+            (
+                (self.document.meshes.len() - meshes.len()) as u64,
+                "meshes are in no node that is shown",
             ),
             (
                 self.incomplete,
