@@ -1,18 +1,14 @@
-//! Pictures of textures: PNG and JPEG files, each decoded once.
+//! Pictures of textures: files of BMP, JPEG, PNG, TGA and WebP, each decoded once.
 
 use std::collections::HashMap;
 use std::io::{self, Cursor};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use zune_jpeg::JpegDecoder;
-use zune_jpeg::errors::DecodeErrors;
-use zune_jpeg::zune_core::colorspace::ColorSpace;
-use zune_jpeg::zune_core::options::DecoderOptions;
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits, guess_format};
 
 use crate::texture::{AlphaMode, Wrap};
 use crate::{MeshBuilder, Texture};
-use shiftvox::picture::png;
 
 const MOST_ACROSS: u32 = 16_384;
 const MOST_BYTES: u64 = 1 << 30;
@@ -25,74 +21,45 @@ struct Picture {
 
 impl Picture {
     fn decode(name: &str, bytes: &[u8], most_bytes: u64) -> Result<Self, String> {
-        let (width, height, texels);
-        if let Some(size) = png::size(bytes) {
-            (width, height) = size;
-            check_size(width, height, most_bytes)?;
-            let image = png::decode(bytes).map_err(|error| error.to_string())?;
-            texels = image.rgba;
-        } else if bytes.starts_with(b"\xff\xd8") {
-            let failed = |error: DecodeErrors| error.to_string();
-            let options = DecoderOptions::default()
-                .jpeg_set_out_colorspace(ColorSpace::RGBA)
-                .set_max_width(MOST_ACROSS as usize)
-                .set_max_height(MOST_ACROSS as usize);
-            let mut decoder = JpegDecoder::new_with_options(Cursor::new(bytes), options);
-            decoder.decode_headers().map_err(failed)?;
-            let size = decoder.dimensions().unwrap_or_default();
-            (width, height) = (size.0 as u32, size.1 as u32);
-            check_size(width, height, most_bytes)?;
-            if let Some(ColorSpace::CMYK | ColorSpace::YCCK) = decoder.input_colorspace() {
-                return Err("its colours are for printing (CMYK); save it as RGB".to_owned());
-            }
-            let bytes = decoder.decode().map_err(failed)?;
-            if bytes.len() != 4 * size.0 * size.1 {
-                return Err("its colours are not supported".to_owned());
-            }
-            texels = bytes.as_chunks::<4>().0.to_vec();
-        } else {
-            let known = OTHERS.iter().find(|(mark, _)| bytes.starts_with(mark));
-            // TGA has no mark.
-            let is_tga = name.to_ascii_lowercase().ends_with(".tga");
-            let format = known.map_or(if is_tga { "TGA" } else { "" }, |(_, format)| format);
-            return Err(match format {
-                "" => "it is neither PNG nor JPEG".to_owned(),
-                "KTX2" => {
-                    "it is KTX2; in glTF, convert it with gltf-transform ktxdecompress".to_owned()
-                }
-                _ => format!(
-                    "it is {format}; convert it to PNG, for example with magick, or in glTF with \
-                     gltf-transform png --formats \"*\""
-                ),
-            });
+        let format = format_of(name, bytes)?;
+        let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+        let mut limits = Limits::no_limits();
+        // Decoders may have 16 bits per channel.
+        limits.max_alloc = Some(2 * MOST_BYTES);
+        reader.limits(limits);
+        let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
+        let (width, height) = decoder.dimensions();
+        if width == 0 || height == 0 {
+            return Err("it is empty".to_owned());
         }
+        let size = 4 * u64::from(width) * u64::from(height);
+        if width > MOST_ACROSS || height > MOST_ACROSS || size > most_bytes {
+            return Err(format!("{width} x {height} texels are too many"));
+        }
+        let picture = DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())?;
         Ok(Self {
             size: [width as usize, height as usize],
-            texels,
+            texels: picture.into_rgba8().as_chunks::<4>().0.to_vec(),
         })
     }
 }
 
-/// Pictures that are not read, by their first bytes.
-const OTHERS: [(&[u8], &str); 7] = [
-    (b"BM", "BMP"),
-    (b"II*\0", "TIFF"),
-    (b"MM\0*", "TIFF"),
-    (b"RIFF", "WebP"),
-    (b"GIF8", "GIF"),
-    (b"DDS ", "DDS"),
-    (b"\xabKTX 20", "KTX2"),
-];
-
-fn check_size(width: u32, height: u32, most_bytes: u64) -> Result<(), String> {
-    if width == 0 || height == 0 {
-        return Err("it is empty".to_owned());
+/// By the first bytes of a file, or for TGA, which has no mark, by its name.
+fn format_of(name: &str, bytes: &[u8]) -> Result<ImageFormat, String> {
+    let is_tga = || name.to_ascii_lowercase().ends_with(".tga");
+    match guess_format(bytes).ok() {
+        Some(format) if format.reading_enabled() => Ok(format),
+        Some(format) => Err(format!(
+            "it is {}; convert it to PNG, for example with magick, or in glTF with \
+             gltf-transform png --formats \"*\"",
+            format.extensions_str()[0].to_uppercase()
+        )),
+        None if bytes.starts_with(b"\xabKTX 20") => {
+            Err("it is KTX2; in glTF, convert it with gltf-transform ktxdecompress".to_owned())
+        }
+        None if is_tga() => Ok(ImageFormat::Tga),
+        None => Err("it is not BMP, JPEG, PNG, TGA or WebP".to_owned()),
     }
-    let bytes = 4 * u64::from(width) * u64::from(height);
-    if width > MOST_ACROSS || height > MOST_ACROSS || bytes > most_bytes {
-        return Err(format!("{width} x {height} texels are too many"));
-    }
-    Ok(())
 }
 
 /// The pictures of a texture, by their names.

@@ -4,13 +4,14 @@ use std::f64::consts::PI;
 use std::fs;
 
 use glam::DVec3;
+use image::{Rgba, RgbaImage};
 use shiftvox::graph::{Silent, sixteenths};
 use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::raster::RasterPicture;
 use shiftvox_mesh::{ColorSpace, Mesh, linear_to_srgb, srgb_to_linear};
 
 use super::opacities::graph_of;
-use super::shared::{DISC, Texels, bytes_of, card, disc, looking, on_threads, triangles};
+use super::shared::{DISC, bytes_of, card, disc, looking, on_threads, triangles};
 use super::voxels::voxels;
 
 /// The square seen from straight before it: so many pixels a side, and the whole picture.
@@ -21,23 +22,23 @@ fn seen(mesh: &Mesh, side: u32, samples: u32) -> RasterPicture {
 }
 
 /// A letter of 8 x 8 texels, in colours that are all different.
-fn letter() -> Texels {
+fn letter() -> RgbaImage {
     let rows = [0x00u8, 0x7c, 0x40, 0x40, 0x78, 0x40, 0x40, 0x00];
-    Texels::new(8, |x, y| {
+    RgbaImage::from_fn(8, 8, |x, y| {
         let is_ink = rows[y as usize] >> (7 - x) & 1 == 1;
         let (x, y) = (x as u8, y as u8);
-        if is_ink {
+        Rgba(if is_ink {
             [200 + x, 10 * y, 3, 255]
         } else {
             [9, 120 + 8 * x, 130 + 9 * y, 255]
-        }
+        })
     })
 }
 
-fn checker() -> Texels {
-    Texels::new(64, |x, y| {
+fn checker() -> RgbaImage {
+    RgbaImage::from_fn(64, 64, |x, y| {
         let light = if (x + y) % 2 == 0 { 255 } else { 0 };
-        [light, light, light, 255]
+        Rgba([light, light, light, 255])
     })
 }
 
@@ -45,7 +46,8 @@ fn checker() -> Texels {
 fn pixels_show_texels_and_far_away_their_mean() {
     let mesh = card(&letter(), 1, 0.0, "map_Kd a.png");
     let drawn = seen(&mesh, 8, 1);
-    assert_eq!(drawn.rgba, letter().colors);
+    let expected: Vec<[u8; 4]> = letter().pixels().map(|p| p.0).collect();
+    assert_eq!(drawn.rgba, expected);
     // Where a texel has four pixels, these are a quarter of it off its middle.
     let drawn = seen(&card(&checker(), 1, 0.0, "map_Kd a.png"), 128, 1);
     let light = 0.75 * 0.75 + 0.25 * 0.25;
@@ -68,9 +70,9 @@ fn pixels_show_texels_and_far_away_their_mean() {
 /// Stripes, seen from the side or squeezed by the texture's places: small pictures are the means of large ones.
 #[test]
 fn samples_are_as_long_and_as_wide_as_the_surface_shows_them() {
-    let stripes = Texels::new(64, |x, _| {
+    let stripes = RgbaImage::from_fn(64, 64, |x, _| {
         let light = if x / 8 % 2 == 0 { 255 } else { 0 };
-        [light, light, light, 255]
+        Rgba([light, light, light, 255])
     });
     let error = |mesh: &Mesh, eye: DVec3, tall: u32, samples: u32| {
         let target = DVec3::new(0.5, 0.5, 0.0);
@@ -125,7 +127,7 @@ fn voxels_show_texels_or_their_mean() {
     assert_eq!(found, on_threads(1, || whole(&mesh)));
     for voxel in found {
         let [x, y, _] = voxel.index.map(|c| c as u32);
-        let [r, g, b, _] = letter().colors[(8 * (7 - y) + x) as usize];
+        let [r, g, b, _] = letter().get_pixel(x, 7 - y).0;
         assert_eq!(voxel.color, [r, g, b], "{x} {y}");
     }
     let grey = whole(&card(&checker(), 1, 0.0, "map_Kd a.png"));
@@ -144,7 +146,7 @@ fn opacities_are_shares_of_light() {
     let middle = 16 * 32 + 16;
     assert_eq!(drawn.rgba[middle], [255, 128, 0, 128]);
     // The brightness of a picture without opacities.
-    let grey = Texels::new(4, |_, _| [102, 0, 0, 255]);
+    let grey = RgbaImage::from_pixel(4, 4, Rgba([102, 0, 0, 255]));
     let drawn = seen(&card(&grey, 1, 0.0, "Kd 0 1 0\nmap_d a.png"), 4, 1);
     assert_eq!(drawn.rgba, [[0, 255, 0, 102]; 16]);
 }
@@ -209,7 +211,7 @@ fn voxels_have_holes() {
 /// The sum over a pane of the weights that `SPEC.md`, R11, blends.
 #[test]
 fn a_pane_stops_as_much_at_an_angle() {
-    let grey = Texels::new(4, |_, _| [102, 0, 0, 255]);
+    let grey = RgbaImage::from_pixel(4, 4, Rgba([102, 0, 0, 255]));
     let (graph, _) = graph_of(&card(&grey, 1, 0.0, "Kd 0 1 0\nmap_d a.png"), 6);
     let area = graph.placement.voxel_size.powi(2);
     let finest = &graph.opacity[graph.level_start[6] as usize..];

@@ -2,27 +2,32 @@
 
 use std::f64::consts::PI;
 use std::fs;
+use std::io::Cursor;
 use std::path::Path;
 
+use image::{DynamicImage, ImageFormat, Rgba, RgbaImage};
 use serde_json::{Value, json};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::{Mesh, SceneOptions, Surface, srgb_to_linear};
 
 use super::shapes::{data_uri, gltf_json, square_buffer};
-use super::shared::{Texels, has};
+use super::shared::has;
 
-/// A picture with halves of two colours, whose lower quarter is transparent.
-fn halves(left: [u8; 3], right: [u8; 3]) -> Vec<u8> {
+/// A picture with halves of two colours. The lower quarter is transparent, where the format has opacity.
+fn halves(left: [u8; 3], right: [u8; 3], format: ImageFormat) -> Vec<u8> {
     let color = |x, y| {
         let [r, g, b] = if x < 32 { left } else { right };
-        [r, g, b, if y < 48 { 255 } else { 0 }]
+        Rgba([r, g, b, if y < 48 { 255 } else { 0 }])
     };
-    Texels::new(64, color).png()
+    let mut picture = DynamicImage::from(RgbaImage::from_fn(64, 64, color));
+    if format == ImageFormat::Jpeg {
+        picture = picture.to_rgb8().into();
+    }
+    let mut bytes = Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, format).unwrap();
+    bytes.into_inner()
 }
-
-/// Yellow and blue, without opacity.
-const JPEG: &[u8] = include_bytes!("halves.jpg");
 
 /// The colour in the middle of a triangle.
 #[track_caller]
@@ -61,18 +66,28 @@ fn obj_files_have_textures() {
     let picture = materials.join("pictures/wood grain.png");
     // sRGB 0.5 is 0.214 of the light.
     let (left, right, plain) = ([1.0, 0.214, 0.0], [0.0, 0.0, 1.0], [1.0, 0.214, 1.0]);
-    // A clear triangle is left out.
-    let png = halves([255, 255, 0], [0, 0, 255]);
-    for (bytes, within, expected) in [
-        (&png[..], 0.01, &[left, left, right, left, plain][..]),
-        (JPEG, 0.02, &[left, left, right, left, left, plain]),
+    for format in [
+        ImageFormat::Bmp,
+        ImageFormat::Jpeg,
+        ImageFormat::Png,
+        ImageFormat::Tga,
+        ImageFormat::WebP,
     ] {
-        fs::write(&picture, bytes).unwrap();
+        let mut expected = vec![left, left, right, left, left, plain];
+        if format != ImageFormat::Jpeg {
+            // A clear triangle is left out.
+            expected.remove(4);
+        }
+        let extension = format.extensions_str()[0];
+        let picture = picture.with_extension(extension);
+        let mtl = mtl.replace(".png", &format!(".{extension}"));
+        fs::write(materials.join("a.mtl"), mtl).unwrap();
+        fs::write(&picture, halves([255, 255, 0], [0, 0, 255], format)).unwrap();
         let mesh = read(&at.join("a.obj"));
         assert_eq!(mesh.warnings(), [""; 0]);
         assert_eq!(mesh.triangles().len(), expected.len());
-        for (triangle, &expected) in expected.iter().enumerate() {
-            check(&mesh, triangle, expected, within);
+        for (triangle, expected) in expected.into_iter().enumerate() {
+            check(&mesh, triangle, expected, 0.02);
         }
     }
     // The middle of the third triangle is at (0.7, 0.37), of the fourth at (-3.77, 5.5).
@@ -81,7 +96,11 @@ fn obj_files_have_textures() {
         ("-o -0.5", left, right),
         ("-s 1.5 1 -o -0.5 0 0 -clamp on", right, left),
     ] {
-        fs::write(&picture, JPEG).unwrap();
+        fs::write(
+            &picture,
+            halves([255, 255, 0], [0, 0, 255], ImageFormat::Jpeg),
+        )
+        .unwrap();
         fs::write(materials.join("a.mtl"), mtl.replace("-clamp off", options)).unwrap();
         let mesh = read(&at.join("a.obj"));
         check(&mesh, 2, third, 0.02);
@@ -108,13 +127,13 @@ fn obj_files_have_textures() {
     check(&mesh, 2, plain, 0.001);
     for (name, bytes, expected) in [
         (
-            "a.jpg",
-            "BM",
-            "it is BMP; convert it to PNG, for example with magick",
+            "b.tga",
+            &b"II*\0"[..],
+            "it is TIFF; convert it to PNG, for example with magick",
         ),
-        ("a.png", "RIFF", "it is WebP"),
-        ("a.TGA", "\0\0\u{2}", "it is TGA"),
-        ("b.tga", "II*\0", "it is TIFF"),
+        ("a.png", b"\xabKTX 20", "gltf-transform ktxdecompress"),
+        ("a.TGA", b"\0\0\x02", "a.TGA cannot be read"),
+        ("a.txt", b"\0\0\x02", "not BMP, JPEG, PNG, TGA or WebP"),
     ] {
         fs::write(materials.join(name), bytes).unwrap();
         let mtl = mtl.replace("pictures/wood grain.png", name);
@@ -134,7 +153,7 @@ fn ply_files_have_textures() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.ply");
     for (name, right) in [("a picture.png", [0, 255, 0]), ("b.png", [0, 0, 255])] {
-        let picture = halves([255, 0, 0], right);
+        let picture = halves([255, 0, 0], right, ImageFormat::Png);
         fs::write(folder.path().join(name), picture).unwrap();
     }
     let grey = [srgb_to_linear(200); 3].map(f64::from);
@@ -193,7 +212,7 @@ fn ply_files_have_textures() {
 fn gltf_files_have_textures() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.gltf");
-    let png = halves([255, 0, 0], [0, 255, 0]);
+    let png = halves([255, 0, 0], [0, 255, 0], ImageFormat::Png);
     fs::write(folder.path().join("a picture.png"), &png).unwrap();
     // Corners on the right half of the picture.
     let corners = [[0.6f32, 0.1], [0.9, 0.1], [0.9, 0.7], [0.6, 0.7]];
@@ -264,25 +283,37 @@ fn gltf_files_have_textures() {
         fs::write(&path, json.to_string()).unwrap();
         check(&read(&path), 0, color, 0.001);
     }
-    json["textures"] = json!([{"extensions": {"EXT_texture_webp": {"source": 0}}}]);
-    json["extensionsRequired"] = json!(["EXT_texture_webp"]);
-    fs::write(&path, json.to_string()).unwrap();
-    let mesh = read(&path);
-    has(
-        mesh.warnings(),
-        &[
-            "PNG or JPEG picture, but that of EXT_texture_webp; convert it with gltf-transform png --formats",
-        ],
-    );
-    check(&mesh, 0, plain, 0.001);
+    // Green, mirrored.
+    for (extension, expected) in [
+        ("EXT_texture_webp", None),
+        (
+            "KHR_texture_basisu",
+            Some(
+                "PNG, JPEG or WebP, but that of KHR_texture_basisu; convert it with gltf-transform ktx",
+            ),
+        ),
+    ] {
+        let source = json!({extension: {"source": 0}});
+        json["textures"] = json!([{"extensions": source, "sampler": 0}]);
+        json["extensionsRequired"] = json!([extension]);
+        fs::write(&path, json.to_string()).unwrap();
+        let mesh = read(&path);
+        has(mesh.warnings(), expected.as_slice());
+        check(
+            &mesh,
+            0,
+            if expected.is_some() { plain } else { green },
+            0.001,
+        );
+    }
 }
 
 /// Opaque voxels have holes where a card is faint. Voxels with opacities do not.
 #[test]
 fn faint_cards_are_voxels_with_opacities() {
     let folder = tempfile::tempdir().unwrap();
-    let faint = Texels::new(8, |_, _| [255, 255, 255, 40]);
-    fs::write(folder.path().join("smoke.png"), faint.png()).unwrap();
+    let faint = RgbaImage::from_pixel(8, 8, Rgba([255, 255, 255, 40]));
+    faint.save(folder.path().join("smoke.png")).unwrap();
     let mtl = "newmtl smoke\nmap_Kd smoke.png\nmap_d smoke.png\nnewmtl brick\n";
     fs::write(folder.path().join("a.mtl"), mtl).unwrap();
     let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n\

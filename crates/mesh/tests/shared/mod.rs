@@ -7,11 +7,11 @@
 
 use std::collections::HashMap;
 use std::fmt::Debug;
-use std::io;
+use std::io::{self, Cursor};
 
 use glam::DVec3;
+use image::{ImageFormat, Rgba, RgbaImage};
 use shiftvox::graph::Silent;
-use shiftvox::picture::png;
 use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples};
 use shiftvox_mesh::{ColorSpace, Material, Mesh, MeshBuilder, MeshFormat, Surface, read};
 use xxhash_rust::xxh3::xxh3_64;
@@ -182,30 +182,13 @@ pub fn one_box(low: [f32; 3], high: [f32; 3]) -> Mesh {
     shape(|builder| cuboid(builder, low, high, 0))
 }
 
-/// A square picture.
-pub struct Texels {
-    side: u32,
-    pub colors: Vec<[u8; 4]>,
-}
-
-impl Texels {
-    /// Of colours and opacities by column and row.
-    pub fn new(side: u32, color: impl Fn(u32, u32) -> [u8; 4]) -> Self {
-        let places = (0..side).flat_map(|y| (0..side).map(move |x| (x, y)));
-        let colors = places.map(|(x, y)| color(x, y)).collect();
-        Self { side, colors }
-    }
-
-    pub fn png(&self) -> Vec<u8> {
-        png::encode(self.side, self.side, &self.colors).unwrap()
-    }
-}
-
 /// A square from (0, 0) to (1, 1), of so many cells a side, with a picture on it. Its corners are that share of the
 /// picture inside.
-pub fn card(picture: &Texels, cells: u32, inside: f64, mtl: &str) -> Mesh {
+pub fn card(picture: &RgbaImage, cells: u32, inside: f64, mtl: &str) -> Mesh {
+    let mut png = Cursor::new(Vec::new());
+    picture.write_to(&mut png, ImageFormat::Png).unwrap();
     let mtl = format!("newmtl a\n{mtl}\n").into_bytes();
-    let files = HashMap::from([("a.mtl", mtl), ("a.png", picture.png())]);
+    let files = HashMap::from([("a.mtl", mtl), ("a.png", png.into_inner())]);
     let files = files_of(|name| files.get(name).cloned());
     let mut obj = "mtllib a.mtl\nusemtl a\n".to_owned();
     for (i, j) in (0..cells * cells).map(|cell| (cell % cells, cell / cells)) {
@@ -226,11 +209,11 @@ pub fn files_of(file: impl Fn(&str) -> Option<Vec<u8>>) -> impl Fn(&str) -> io::
 }
 
 /// An opaque disc of a radius of 24 of 64 texels, and the opacity around it.
-pub fn disc(around: u8) -> Texels {
-    Texels::new(64, |x, y| {
+pub fn disc(around: u8) -> RgbaImage {
+    RgbaImage::from_fn(64, 64, |x, y| {
         let [x, y] = [x, y].map(|c| f64::from(c) + 0.5 - 32.0);
         let alpha = if x * x + y * y < 576.0 { 255 } else { around };
-        [255, 128, 0, alpha]
+        Rgba([255, 128, 0, alpha])
     })
 }
 

@@ -200,9 +200,17 @@ pub(super) struct TextureTransform {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Texture {
-    pub(super) source: Option<usize>,
+    source: Option<usize>,
     pub(super) sampler: Option<usize>,
     pub(super) extensions: Value,
+}
+
+impl Texture {
+    /// PNG or JPEG, or else WebP.
+    pub(super) fn picture(&self) -> Option<usize> {
+        let webp = &self.extensions["EXT_texture_webp"]["source"];
+        self.source.or_else(|| webp.as_u64()?.try_into().ok())
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]

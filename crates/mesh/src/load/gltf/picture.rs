@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
 use super::accessor::{Numbers, view_bytes};
-use super::document::{Document, TextureTransform};
+use super::document::{self, Document, TextureTransform};
 use super::{Beside, Buffers, decoded, unescaped};
 use crate::Texture;
 use crate::load::texture::{Parts, Textures};
@@ -50,7 +50,7 @@ pub(super) fn find(
     textures: &mut Textures,
 ) -> Option<Arc<Texture>> {
     let found = document.textures.get(texture);
-    let source = found.and_then(|texture| texture.source);
+    let source = found.and_then(document::Texture::picture);
     let sampler = found.and_then(|texture| document.samplers.get(texture.sampler?));
     let image = source.and_then(|source| document.images.get(source));
     let uri = image.and_then(|image| image.uri.as_deref());
@@ -73,7 +73,7 @@ pub(super) fn find(
                 };
                 format!(", but that of {name}; convert it with gltf-transform {command}")
             });
-            missing(&format!("it has no PNG or JPEG picture{other}"))
+            missing(&format!("it has no picture of PNG, JPEG or WebP{other}"))
         })?;
         match (&file, uri) {
             (Some(file), _) => beside(file),

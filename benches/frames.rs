@@ -1,0 +1,133 @@
+//! Time of a frame: of the fast engine by instruction set, of the machine by picture size, alone and counted, and of small
+//! pictures in a loop. Whole pictures: `docs/performance.md`.
+//!
+//! ```text
+//! cargo bench
+//! ```
+#![allow(missing_docs, reason = "the functions that criterion makes")]
+
+#[path = "../tests/machine/scenes/mod.rs"]
+mod scenes;
+
+use std::time::Duration;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use glam::DVec3;
+use hwmodel::NoProbe;
+use hwmodel::count::Counter;
+use shiftvox::fast::{Fast, FastOptions, Instructions};
+use shiftvox::frame::Frame;
+use shiftvox::graph::Graph;
+use shiftvox::machine::Machine;
+use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
+use shiftvox::{Renderer, Scene, Shading};
+
+use scenes::graph_of;
+
+/// A generator, and eye and target as parts of its side: the cameras of the benchmark scenes, large voxels, and a cyclic
+/// graph.
+const SUBJECTS: [(&str, [[f64; 3]; 2]); 4] = [
+    ("gen:terrain,depth=9", [[1.6, -0.7, 1.25], [0.5, 0.5, 0.3]]),
+    (
+        "gen:menger,depth=4",
+        [[0.47, -0.95, 0.53], [0.475, 0.5, 0.475]],
+    ),
+    ("gen:sphere,depth=5", [[1.1, -0.4, 0.8], [0.5, 0.5, 0.5]]),
+    (
+        "gen:sierpinski,depth=12",
+        [[1.2, -0.9, 0.9], [0.45, 0.45, 0.4]],
+    ),
+];
+
+fn set_up(graph: &Graph, places: [[f64; 3]; 2], size: u32, options: &SetupOptions) -> FrameSetup {
+    let side = f64::from(1u32 << graph.depth);
+    let [eye, target] = places.map(|place| DVec3::from_array(place) * side);
+    let camera = Camera::looking(eye, target, 60.0, (size, size));
+    FrameSetup::new(&camera, &graph.placement, graph.depth, options).expect("a frame")
+}
+
+fn fast(criterion: &mut Criterion) {
+    for (spec, places) in SUBJECTS {
+        let graph = graph_of(spec);
+        let mut group = criterion.benchmark_group(format!("fast/{spec}"));
+        for lod_px in [0.0, 1.0] {
+            let options = SetupOptions {
+                lod_px,
+                ..SetupOptions::default()
+            };
+            let setup = set_up(&graph, places, 1024, &options);
+            for instructions in [Instructions::Scalar, Instructions::Auto] {
+                let options = FastOptions {
+                    threads: 1,
+                    instructions,
+                    ..FastOptions::default()
+                };
+                let mut fast = Fast::new(options, Box::new(Machine::default()));
+                let mut frame = Frame::nodes_only(setup.width, setup.height);
+                let id = BenchmarkId::new(
+                    format!("{instructions:?}"),
+                    format!("level of detail {lod_px}"),
+                );
+                group.bench_function(id, |bencher| {
+                    let mut draw = || fast.render(&graph.view(), &setup, &mut frame);
+                    bencher.iter(|| draw().expect("a frame"));
+                });
+            }
+        }
+    }
+}
+
+fn machine(criterion: &mut Criterion) {
+    let mut machine = Machine::default();
+    for (spec, places) in &SUBJECTS[..2] {
+        let graph = graph_of(spec);
+        for (rule, options) in [
+            ("exact", SetupOptions::default()),
+            ("paper", SetupOptions::paper()),
+        ] {
+            let mut group = criterion.benchmark_group(format!("machine/{spec}/{rule}"));
+            for size in [128, 512] {
+                let setup = set_up(&graph, *places, size, &options);
+                let view = graph.view();
+                let mut frame = Frame::new(setup.width, setup.height, false);
+                let drawn = machine.render_probed(&view, &setup, &mut frame, Counter::new());
+                let (_, counter) = drawn.expect("no overflow in 64 bits");
+                group.throughput(Throughput::Elements(counter.records()));
+                group.bench_function(BenchmarkId::new("alone", size), |bencher| {
+                    bencher.iter(|| machine.render_probed(&view, &setup, &mut frame, NoProbe));
+                });
+                group.bench_function(BenchmarkId::new("counted", size), |bencher| {
+                    bencher
+                        .iter(|| machine.render_probed(&view, &setup, &mut frame, Counter::new()));
+                });
+            }
+        }
+    }
+}
+
+/// Small pictures in a loop: a renderer that is kept, and a new one for each.
+fn small_pictures(criterion: &mut Criterion) {
+    let scene = Scene::from(graph_of("gen:menger,depth=4"));
+    let camera = shiftvox::Camera::fit(&scene);
+    let renderer = Renderer::new().shading(Shading::Flat).threads(1);
+    for size in [64, 256] {
+        let mut group = criterion.benchmark_group(format!("pictures of {size} x {size}"));
+        let mut pixels = vec![[0; 4]; (size * size) as usize];
+        group.bench_function("a renderer that is kept", |bencher| {
+            bencher.iter(|| renderer.render_into(&scene, &camera, size, size, &mut pixels));
+        });
+        group.bench_function("a new renderer for each", |bencher| {
+            bencher.iter(|| renderer.clone().render(&scene, &camera, size, size));
+        });
+    }
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default()
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    targets = fast, machine, small_pictures
+}
+criterion_main!(benches);
