@@ -1,13 +1,10 @@
-//! Time of a frame: of the fast engine by instruction set, of the machine by picture size, alone and counted, and of small
-//! pictures in a loop. Whole pictures: `docs/performance.md`.
+//! Time of a frame: of the fast engine by instruction set, of the machine, alone and counted, and of small pictures in a
+//! loop. Whole pictures: `docs/performance.md`.
 //!
 //! ```text
-//! cargo bench
+//! cargo bench -p shiftvox-benches
 //! ```
 #![allow(missing_docs, reason = "the functions that criterion makes")]
-
-#[path = "../tests/machine/scenes/mod.rs"]
-mod scenes;
 
 use std::time::Duration;
 
@@ -22,21 +19,11 @@ use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
 use shiftvox::{Renderer, Scene, Shading};
 
-use scenes::graph_of;
-
-/// A generator, and eye and target as parts of its side: the cameras of the benchmark scenes, large voxels, and a cyclic
-/// graph.
-const SUBJECTS: [(&str, [[f64; 3]; 2]); 4] = [
-    ("gen:terrain,depth=9", [[1.6, -0.7, 1.25], [0.5, 0.5, 0.3]]),
-    (
-        "gen:menger,depth=4",
-        [[0.47, -0.95, 0.53], [0.475, 0.5, 0.475]],
-    ),
-    ("gen:sphere,depth=5", [[1.1, -0.4, 0.8], [0.5, 0.5, 0.5]]),
-    (
-        "gen:sierpinski,depth=12",
-        [[1.2, -0.9, 0.9], [0.45, 0.45, 0.4]],
-    ),
+/// A generator, and eye and target as parts of its side: the cameras of the benchmark scenes, and a cyclic graph.
+const SUBJECTS: [(&str, [[f64; 3]; 2]); 3] = [
+    ("terrain,depth=9", [[1.6, -0.7, 1.25], [0.5, 0.5, 0.3]]),
+    ("menger,depth=4", [[0.47, -0.95, 0.53], [0.475, 0.5, 0.475]]),
+    ("sierpinski,depth=12", [[1.2, -0.9, 0.9], [0.45, 0.45, 0.4]]),
 ];
 
 fn set_up(graph: &Graph, places: [[f64; 3]; 2], size: u32, options: &SetupOptions) -> FrameSetup {
@@ -47,58 +34,51 @@ fn set_up(graph: &Graph, places: [[f64; 3]; 2], size: u32, options: &SetupOption
 }
 
 fn fast(criterion: &mut Criterion) {
-    for (spec, places) in SUBJECTS {
-        let graph = graph_of(spec);
-        let mut group = criterion.benchmark_group(format!("fast/{spec}"));
-        for lod_px in [0.0, 1.0] {
-            let options = SetupOptions {
-                lod_px,
-                ..SetupOptions::default()
+    for (name, places) in SUBJECTS {
+        let scene = Scene::generate(name).expect(name);
+        let graph = scene.graph();
+        let setup = set_up(graph, places, 1024, &SetupOptions::default());
+        let mut group = criterion.benchmark_group(format!("fast/{name}"));
+        for instructions in [Instructions::Scalar, Instructions::Auto] {
+            let options = FastOptions {
+                threads: 1,
+                instructions,
+                ..FastOptions::default()
             };
-            let setup = set_up(&graph, places, 1024, &options);
-            for instructions in [Instructions::Scalar, Instructions::Auto] {
-                let options = FastOptions {
-                    threads: 1,
-                    instructions,
-                    ..FastOptions::default()
-                };
-                let mut fast = Fast::new(options, Box::new(Machine::default()));
-                let mut frame = Frame::nodes_only(setup.width, setup.height);
-                let id = BenchmarkId::new(
-                    format!("{instructions:?}"),
-                    format!("level of detail {lod_px}"),
-                );
-                group.bench_function(id, |bencher| {
-                    let mut draw = || fast.render(&graph.view(), &setup, &mut frame);
-                    bencher.iter(|| draw().expect("a frame"));
-                });
-            }
+            let mut fast = Fast::new(options, Box::new(Machine::default()));
+            let mut frame = Frame::nodes_only(setup.width, setup.height);
+            group.bench_function(format!("{instructions:?}"), |bencher| {
+                let mut draw = || fast.render(&graph.view(), &setup, &mut frame);
+                bencher.iter(|| draw().expect("a frame"));
+            });
         }
     }
 }
 
 fn machine(criterion: &mut Criterion) {
     let mut machine = Machine::default();
-    for (spec, places) in &SUBJECTS[..2] {
-        let graph = graph_of(spec);
+    for (name, places) in &SUBJECTS[..2] {
+        let scene = Scene::generate(name).expect(name);
+        let view = scene.graph().view();
         for (rule, options) in [
             ("exact", SetupOptions::default()),
             ("paper", SetupOptions::paper()),
         ] {
-            let mut group = criterion.benchmark_group(format!("machine/{spec}/{rule}"));
+            let mut group = criterion.benchmark_group(format!("machine/{name}/{rule}"));
             for size in [128, 512] {
-                let setup = set_up(&graph, *places, size, &options);
-                let view = graph.view();
+                let setup = set_up(scene.graph(), *places, size, &options);
                 let mut frame = Frame::new(setup.width, setup.height, false);
                 let drawn = machine.render_probed(&view, &setup, &mut frame, Counter::new());
-                let (_, counter) = drawn.expect("no overflow in 64 bits");
+                let (_, counter) = drawn.expect("a frame");
                 group.throughput(Throughput::Elements(counter.records()));
                 group.bench_function(BenchmarkId::new("alone", size), |bencher| {
-                    bencher.iter(|| machine.render_probed(&view, &setup, &mut frame, NoProbe));
+                    let mut draw = || machine.render_probed(&view, &setup, &mut frame, NoProbe);
+                    bencher.iter(|| draw().expect("a frame"));
                 });
                 group.bench_function(BenchmarkId::new("counted", size), |bencher| {
-                    bencher
-                        .iter(|| machine.render_probed(&view, &setup, &mut frame, Counter::new()));
+                    let counter = Counter::new;
+                    let mut draw = || machine.render_probed(&view, &setup, &mut frame, counter());
+                    bencher.iter(|| draw().expect("a frame"));
                 });
             }
         }
@@ -107,17 +87,19 @@ fn machine(criterion: &mut Criterion) {
 
 /// Small pictures in a loop: a renderer that is kept, and a new one for each.
 fn small_pictures(criterion: &mut Criterion) {
-    let scene = Scene::from(graph_of("gen:menger,depth=4"));
+    let scene = Scene::generate(SUBJECTS[1].0).expect("a scene");
     let camera = shiftvox::Camera::fit(&scene);
     let renderer = Renderer::new().shading(Shading::Flat).threads(1);
     for size in [64, 256] {
         let mut group = criterion.benchmark_group(format!("pictures of {size} x {size}"));
         let mut pixels = vec![[0; 4]; (size * size) as usize];
         group.bench_function("a renderer that is kept", |bencher| {
-            bencher.iter(|| renderer.render_into(&scene, &camera, size, size, &mut pixels));
+            let mut draw = || renderer.render_into(&scene, &camera, size, size, &mut pixels);
+            bencher.iter(|| draw().expect("a picture"));
         });
         group.bench_function("a new renderer for each", |bencher| {
-            bencher.iter(|| renderer.clone().render(&scene, &camera, size, size));
+            let draw = || renderer.clone().render(&scene, &camera, size, size);
+            bencher.iter(|| draw().expect("a picture"));
         });
     }
 }

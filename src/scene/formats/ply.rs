@@ -60,5 +60,9 @@ pub(super) fn read(input: &mut Input<'_>, emitter: &mut Emitter<'_>) -> Result<(
             emitter,
         )
     })?;
+    if before.last().is_some_and(|last| last.name == b"vertex") {
+        let unread = file.unread()?.map(str::to_owned);
+        emitter.info.warnings.extend(unread);
+    }
     cloud.finish(&mut emitter.info)
 }

@@ -65,6 +65,12 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         self.source.offset
     }
 
+    /// The warning if more than blanks follows what was read.
+    pub fn unread(&mut self) -> Result<Option<&'static str>, Problem> {
+        let more = self.source.has_more()?;
+        Ok(more.then_some("what follows the last element of the header was not read"))
+    }
+
     pub fn skip(&mut self, element: &Element) -> Result<(), Problem> {
         let is_list = |property: &Property| property.list.is_some();
         let is_text = self.header.encoding == Encoding::Ascii;

@@ -86,6 +86,22 @@ impl<'a, R: BufRead> Source<'a, R> {
         Ok(Some(decoded))
     }
 
+    /// Skips blanks; whether more follows.
+    pub(in crate::scene) fn has_more(&mut self) -> Result<bool, Problem> {
+        loop {
+            let here = self.reader.fill_buf().map_err(Problem::Read)?;
+            if !here.iter().all(u8::is_ascii_whitespace) {
+                return Ok(true);
+            }
+            let blanks = here.len();
+            if blanks == 0 {
+                return Ok(false);
+            }
+            self.reader.consume(blanks);
+            self.offset += blanks as u64;
+        }
+    }
+
     /// Bytes that can be read without another call of the system.
     pub(in crate::scene) fn buffered(&mut self) -> Result<usize, Problem> {
         Ok(self.reader.fill_buf().map_err(Problem::Read)?.len())

@@ -144,6 +144,9 @@ pub(super) fn read(
             }
         }
     }
+    if let Some(unread) = file.unread()? {
+        builder.warn(unread);
+    }
     if has_opacities {
         builder.warn("opacities of vertices or faces were passed over");
     }

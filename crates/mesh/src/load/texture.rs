@@ -5,7 +5,7 @@ use std::io::{self, Cursor};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits, guess_format};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, guess_format};
 
 use crate::texture::{AlphaMode, Wrap};
 use crate::{MeshBuilder, Texture};
@@ -22,31 +22,39 @@ struct Picture {
 impl Picture {
     fn decode(name: &str, bytes: &[u8], most_bytes: u64) -> Result<Self, String> {
         let format = format_of(name, bytes)?;
-        let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-        let mut limits = Limits::no_limits();
-        // Decoders may have 16 bits per channel.
-        limits.max_alloc = Some(2 * MOST_BYTES);
-        reader.limits(limits);
-        let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
+        let told = |error: ImageError| error.to_string().replace('\n', " ");
+        let reader = ImageReader::with_format(Cursor::new(bytes), format);
+        let decoder = reader.into_decoder().map_err(told)?;
         let (width, height) = decoder.dimensions();
         if width == 0 || height == 0 {
             return Err("it is empty".to_owned());
         }
         let size = 4 * u64::from(width) * u64::from(height);
         if width > MOST_ACROSS || height > MOST_ACROSS || size > most_bytes {
-            return Err(format!("{width} x {height} texels are too many"));
+            return Err(format!(
+                "{width} x {height} texels are too many: a side may have {MOST_ACROSS}, and all textures 1 GiB"
+            ));
         }
-        let picture = DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())?;
+        let picture = DynamicImage::from_decoder(decoder).map_err(told)?;
+        let mut texels = picture.into_rgba8().as_chunks::<4>().0.to_vec();
+        // Some programs write 32 bits per texel and mean 24.
+        if format == ImageFormat::Tga && texels.iter().all(|texel| texel[3] == 0) {
+            texels.iter_mut().for_each(|texel| texel[3] = 255);
+        }
         Ok(Self {
             size: [width as usize, height as usize],
-            texels: picture.into_rgba8().as_chunks::<4>().0.to_vec(),
+            texels,
         })
     }
 }
 
 /// By the first bytes of a file, or for TGA, which has no mark, by its name.
 fn format_of(name: &str, bytes: &[u8]) -> Result<ImageFormat, String> {
-    let is_tga = || name.to_ascii_lowercase().ends_with(".tga");
+    let kinds = [1, 2, 3, 9, 10, 11];
+    let is_tga = || {
+        let is_named = name.to_ascii_lowercase().ends_with(".tga");
+        is_named && bytes.get(2).is_some_and(|kind| kinds.contains(kind))
+    };
     match guess_format(bytes).ok() {
         Some(format) if format.reading_enabled() => Ok(format),
         Some(format) => Err(format!(
@@ -58,7 +66,7 @@ fn format_of(name: &str, bytes: &[u8]) -> Result<ImageFormat, String> {
             Err("it is KTX2; in glTF, convert it with gltf-transform ktxdecompress".to_owned())
         }
         None if is_tga() => Ok(ImageFormat::Tga),
-        None => Err("it is not BMP, JPEG, PNG, TGA or WebP".to_owned()),
+        None => Err("it is not BMP, JPEG, PNG, WebP, or TGA in a file named so".to_owned()),
     }
 }
 

@@ -269,11 +269,14 @@ fn ply_files_have_strips_and_colours_of_faces() {
     let both = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     let places = places.replace(" 0\n", " 0 9 9 9\n");
     let mesh = load(
-        format!("{vertices}{both}{face}{places}{faces}").as_bytes(),
+        format!("{vertices}{both}{face}{places}{faces} 3 0 1 3 9 9 9").as_bytes(),
         MeshFormat::Ply,
     );
     has(
         mesh.unwrap().warnings(),
-        &["colours of faces were passed over"],
+        &[
+            "colours of faces were passed over",
+            "what follows the last element of the header was not read",
+        ],
     );
 }

@@ -90,6 +90,19 @@ fn obj_files_have_textures() {
             check(&mesh, triangle, expected, 0.02);
         }
     }
+    // 32 bits per texel, of which none are said to be opacity.
+    let tga = [
+        &[0, 0, 2][..],
+        &[0; 9],
+        &[1, 0, 1, 0, 32, 0],
+        &[0, 255, 255, 0],
+    ]
+    .concat();
+    fs::write(picture.with_extension("tga"), tga).unwrap();
+    fs::write(materials.join("a.mtl"), mtl.replace(".png", ".tga")).unwrap();
+    let mesh = read(&at.join("a.obj"));
+    check(&mesh, 2, left, 0.02);
+    assert_eq!(Surface::triangle(&mesh, 2).at([1.0 / 3.0; 3], 0.0).1, 1.0);
     // The middle of the third triangle is at (0.7, 0.37), of the fourth at (-3.77, 5.5).
     for (options, third, fourth) in [
         ("-clamp on -s 1 1 1", right, left),
@@ -133,7 +146,8 @@ fn obj_files_have_textures() {
         ),
         ("a.png", b"\xabKTX 20", "gltf-transform ktxdecompress"),
         ("a.TGA", b"\0\0\x02", "a.TGA cannot be read"),
-        ("a.txt", b"\0\0\x02", "not BMP, JPEG, PNG, TGA or WebP"),
+        ("a.txt", b"\0\0\x02", "not BMP, JPEG, PNG, WebP, or TGA"),
+        ("b.tga", b"\0\0\x04", "not BMP, JPEG, PNG, WebP, or TGA"),
     ] {
         fs::write(materials.join(name), bytes).unwrap();
         let mtl = mtl.replace("pictures/wood grain.png", name);
@@ -294,7 +308,7 @@ fn gltf_files_have_textures() {
         ),
     ] {
         let source = json!({extension: {"source": 0}});
-        json["textures"] = json!([{"extensions": source, "sampler": 0}]);
+        json["textures"] = json!([{"extensions": source, "sampler": 0, "source": 9}]);
         json["extensionsRequired"] = json!([extension]);
         fs::write(&path, json.to_string()).unwrap();
         let mesh = read(&path);

@@ -206,10 +206,11 @@ pub(super) struct Texture {
 }
 
 impl Texture {
-    /// PNG or JPEG, or else WebP.
-    pub(super) fn picture(&self) -> Option<usize> {
-        let webp = &self.extensions["EXT_texture_webp"]["source"];
-        self.source.or_else(|| webp.as_u64()?.try_into().ok())
+    /// Numbers of its pictures, the better first: WebP, and PNG or JPEG.
+    pub(super) fn pictures(&self) -> impl Iterator<Item = usize> {
+        let webp = self.extensions["EXT_texture_webp"]["source"].as_u64();
+        let webp = webp.and_then(|number| number.try_into().ok());
+        webp.into_iter().chain(self.source)
     }
 }
 

@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
 use super::accessor::{Numbers, view_bytes};
-use super::document::{self, Document, TextureTransform};
+use super::document::{Document, TextureTransform};
 use super::{Beside, Buffers, decoded, unescaped};
 use crate::Texture;
 use crate::load::texture::{Parts, Textures};
@@ -50,9 +50,9 @@ pub(super) fn find(
     textures: &mut Textures,
 ) -> Option<Arc<Texture>> {
     let found = document.textures.get(texture);
-    let source = found.and_then(document::Texture::picture);
     let sampler = found.and_then(|texture| document.samplers.get(texture.sampler?));
-    let image = source.and_then(|source| document.images.get(source));
+    let mut pictures = found.into_iter().flat_map(|texture| texture.pictures());
+    let image = pictures.find_map(|number| document.images.get(number));
     let uri = image.and_then(|image| image.uri.as_deref());
     let file = uri.filter(|uri| !uri.starts_with("data:")).map(unescaped);
     let name = file.clone().unwrap_or_else(|| format!("number {texture}"));
@@ -65,7 +65,9 @@ pub(super) fn find(
     textures.get(parts, |_| {
         let missing = |what: &str| io::Error::new(ErrorKind::NotFound, what.to_owned());
         let image = image.ok_or_else(|| {
-            let other = found.and_then(|texture| texture.extensions.as_object()?.keys().next());
+            let others = found.and_then(|texture| texture.extensions.as_object());
+            let mut others = others.into_iter().flat_map(|others| others.keys());
+            let other = others.find(|name| *name != "EXT_texture_webp");
             let other = other.map_or(String::new(), |name| {
                 let command = match &name[..] {
                     "KHR_texture_basisu" => "ktxdecompress",
