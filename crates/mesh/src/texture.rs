@@ -274,11 +274,10 @@ impl Level {
         });
         let [(columns, right), (rows, down)] = near;
         let between = |[a, b]: [V; 2], share: f64| a * (1.0 - share) + b * share;
-        let row = |y: usize| {
-            let texels = columns.map(|x| of(self.texels[y * self.size[0] + x]));
-            between(texels, right)
-        };
-        between(rows.map(row), down)
+        // Without `map` of arrays, which is a call for each entry.
+        let texel = |x: usize, y: usize| of(self.texels[y * self.size[0] + x]);
+        let row = |y: usize| between([texel(columns[0], y), texel(columns[1], y)], right);
+        between([row(rows[0]), row(rows[1])], down)
     }
 
     fn halved(&self) -> Self {

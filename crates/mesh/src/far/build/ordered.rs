@@ -40,7 +40,7 @@ impl Ordered<'_> {
         }
         let triangle = self.surface.triangle(number);
         let corners = triangle.corners.map(|p| self.place(p));
-        let (_, opacity) = triangle.at(barycentric(&corners, point), 0.0);
+        let opacity = triangle.opacity(barycentric(&corners, point), 0.0);
         stops(opacity, point)
     }
 
