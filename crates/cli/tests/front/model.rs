@@ -104,7 +104,7 @@ fn wide_views_take_bounded_work() {
                 let view = format!("--fov {fov} --coverage {rule} --size 8");
                 run(scene, &view, 2e6, false);
             }
-            // Those of most work.
+            // Each rule from one side.
             for end in ["any --size 8", "center --size 8 --view top --zoom 2"] {
                 run(scene, &format!("--fov {fov} --coverage {end}"), 1e9, true);
             }
