@@ -53,7 +53,7 @@ def _run(command, scenes, options, parse):
     words = command.split()
     if not words or words[0].startswith("-"):
         raise _refused(f"{command!r} is no command, such as \"info\" or \"bench quality\"")
-    if words[0] in ("completions", "man"):
+    if words[0] in ("completions", "man", "view"):
         raise _refused(f"{words[0]}: it prints no JSON")
     # Results name scene files, so that of a `Scene` object stays beside them.
     results = options.get("results")
@@ -82,7 +82,7 @@ def run(command, *scenes, **options):
     `shiftvox COMMAND --help` lists, with underscores for dashes. Scenes are files, generators, or
     `Scene` objects.
 
-    Raises `Error` with the program's `exit_code`, also for commands without JSON (man, completions).
+    Raises `Error` with the program's `exit_code`, also for commands without JSON (man, completions, view).
     """
     return _run(command, scenes, options, json.loads)
 

@@ -1,4 +1,5 @@
 //! The Python package. Comments of Python's objects become their docstrings.
+#![forbid(unsafe_code)]
 
 mod arguments;
 mod camera;

@@ -26,6 +26,9 @@ pub(crate) struct Scene {
 /// Ends of a range, or none.
 type Ends = (Option<i64>, Option<i64>);
 
+/// A pickle: a function and its arguments.
+type Reduced = (Py<PyAny>, (Py<PyBytes>, bool));
+
 fn options(depth: i64, opacities: bool, axis: Option<&str>) -> PyResult<SceneOptions> {
     let depth = count("depth", depth)?;
     let options = SceneOptions::new().mesh_depth(depth).opacities(opacities);
@@ -221,7 +224,7 @@ impl Scene {
         ))
     }
 
-    fn __reduce__(&self, py: Python<'_>) -> PyResult<(Py<PyAny>, (Py<PyBytes>, bool))> {
+    fn __reduce__(&self, py: Python<'_>) -> PyResult<Reduced> {
         let scene = Arc::clone(&self.scene);
         let bytes = on_all_threads(py, move |_| {
             let mut bytes = Vec::new();

@@ -1,5 +1,4 @@
 //! The command line: one file per command. stdout is data, stderr everything else.
-#![cfg_attr(not(feature = "view"), allow(dead_code, unused_variables))]
 
 mod args;
 mod batch;
@@ -30,7 +29,6 @@ mod stress;
 mod textured;
 mod triangles;
 mod turntable;
-#[cfg(feature = "view")]
 mod view;
 
 use std::ffi::OsString;
@@ -123,7 +121,6 @@ enum Command {
     ///
     /// Prints an address to open. The page moves the camera, changes settings, and shows the cost and
     /// the `render` command of each picture. For other computers see docs/view.md.
-    #[cfg(feature = "view")]
     View(Box<view::ViewArgs>),
     /// Draw a mesh as triangles: the reference picture of a mesh
     Triangles(Box<triangles::TrianglesArgs>),
@@ -277,7 +274,6 @@ fn run_command(cli: Cli, matches: &ArgMatches, console: &Console) -> Result<(), 
         None => demo::run(console),
         Some(Command::Render(args)) => render::run(&args, console),
         Some(Command::Turntable(args)) => turntable::run(&args, console),
-        #[cfg(feature = "view")]
         Some(Command::View(args)) => view::run(*args, matches, console),
         Some(Command::Triangles(args)) => triangles::run(&args, console),
         Some(Command::Info(args)) => info::run(&args, console),

@@ -1,14 +1,12 @@
 //! `model`: the cost of a frame on the light hardware.
 
 mod args;
-#[cfg(feature = "view")]
 mod brief;
 mod explore;
 mod output;
 mod vectors;
 
 pub(super) use args::ModelArgs;
-#[cfg(feature = "view")]
 pub(super) use brief::brief;
 
 use hwmodel::cycles::{Hardware, Observer, OuterRequest, write_ramulator};

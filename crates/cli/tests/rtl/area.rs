@@ -36,6 +36,7 @@ fn parameters(machine: &Machine, view: &str) -> String {
 }
 
 #[test]
+#[ignore = "takes half a minute"]
 fn memories_have_the_bits_that_the_model_says() {
     let shelter = tempfile::tempdir().unwrap();
     let into = shelter.path().join("memories.vvp");

@@ -169,7 +169,7 @@ fn voxels_are_picked() {
 #[test]
 #[ignore = "needs chromium"]
 fn backgrounds_and_legends() {
-    let program = Program::start("assets/tree.vox");
+    let program = Program::start("assets/tree.vox --size 200");
     let browser = &mut Browser::open(&program.address);
     assert!(!assert_is_renders(browser).contains("--background"));
     browser.emulate(false, true);
@@ -221,7 +221,7 @@ fn backgrounds_and_legends() {
 #[test]
 #[ignore = "needs chromium"]
 fn sections_and_parallel_rays() {
-    let program = Program::start("assets/tree.vox");
+    let program = Program::start("assets/tree.vox --size 200");
     let browser = &mut Browser::open(&program.address);
     let whole = assert_is_renders(browser);
     browser.set("section", "2<");
@@ -456,19 +456,19 @@ fn the_slider_shows_the_papers_rule() {
     assert_eq!(browser.text("$('error').textContent"), "");
     // Only the rule differs: with the paper's own there is no difference.
     browser.value(
-        "view.aa = 2; view.flags = { bits: '40', lod: '2', coverage: 'any', cage: 'corners', tolerance: 'inf' };
+        "view.aa = 2; view.size = '150x100'; view.flags = { bits: '40', lod: '2', coverage: 'any', cage: 'corners', tolerance: 'inf' };
          changed()",
     );
     browser.wait(whole);
     let said = browser.text("$('difference').textContent");
-    assert!(said.starts_with("0 of 118,800"), "{said}");
+    assert!(said.starts_with("0 of 15,000"), "{said}");
 }
 
 /// The paper's rule takes the machine minutes at this size, longer than this test waits.
 #[test]
 #[ignore = "needs chromium"]
 fn a_new_input_ends_a_slow_drawing() {
-    let program = Program::start("assets/tree.vox tests/data/axes.vox --size 2048");
+    let program = Program::start("assets/tree.vox tests/data/axes.vox --size 1400");
     let browser = &mut Browser::open(&program.address);
     let command = assert_is_renders(browser);
     browser.value("$('copy').click()");
