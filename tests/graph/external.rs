@@ -82,6 +82,17 @@ fn generated_scenes_are_the_same_in_any_memory() {
     }
 }
 
+/// Threads of a pool wait for runs that the same threads sort.
+#[test]
+fn all_threads_of_a_pool_may_build_at_once() {
+    let voxels = generated("gen:sphere,depth=5");
+    let expected = bytes_of(&build(&voxels));
+    let (sender, receiver) = std::sync::mpsc::channel();
+    std::thread::spawn(move || sender.send(rayon::broadcast(|_| external(&voxels, 64 << 20).0)));
+    let files = receiver.recv_timeout(std::time::Duration::from_secs(100));
+    assert!(files.unwrap().iter().all(|file| *file == expected));
+}
+
 #[test]
 fn what_cannot_be_built_leaves_nothing_behind() {
     let folder = tempfile::tempdir().unwrap();

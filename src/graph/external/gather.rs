@@ -4,9 +4,12 @@
 //! corner so far. Runs with another corner are sorted again at the end; most scenes have few.
 
 use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::thread::JoinHandle;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::time::Duration;
 
+use rayon::Yield;
 use rayon::prelude::*;
 
 use super::buffer_sizes::BufferSizes;
@@ -22,8 +25,8 @@ pub(super) struct Gather {
     sizes: BufferSizes,
     scratch: Arc<Scratch>,
     buffer: Vec<u128>,
-    /// The thread that sorts and writes the previous run.
-    running: Option<JoinHandle<Sorted>>,
+    /// Of the previous run, which is sorted and written meanwhile.
+    running: Option<Receiver<Sorted>>,
     /// The corner from which each run is sorted.
     corners: Vec<[i32; 3]>,
     pub(super) min: [i32; 3],
@@ -72,8 +75,7 @@ impl Gather {
         let mut records = std::mem::replace(&mut self.buffer, spare);
         let corner = self.min;
         self.corners.push(corner);
-        let thread = std::thread::Builder::new().name("sort a run".to_owned());
-        let sort = move || {
+        let sort = move || -> Sorted {
             records
                 .par_iter_mut()
                 .for_each(|record| *record = placed(*record, corner));
@@ -83,16 +85,34 @@ impl Gather {
             records.clear();
             Ok((records, runs))
         };
-        self.running = Some(thread.spawn(sort)?);
+        let (sender, receiver) = mpsc::channel();
+        rayon::spawn(move || {
+            if let Ok(sorted) = catch_unwind(AssertUnwindSafe(sort)) {
+                let _ = sender.send(sorted);
+            }
+        });
+        self.running = Some(receiver);
         Ok(())
     }
 
+    /// A thread of a pool works for the pool meanwhile. If all of them only waited, none would sort.
     fn waited(&mut self) -> Sorted {
-        match self.running.take() {
-            None => Ok((Vec::new(), Runs::new(&self.scratch)?)),
-            Some(thread) => thread
-                .join()
-                .unwrap_or_else(|_| Err(io::Error::other("the thread that sorts has failed"))),
+        let Some(running) = self.running.take() else {
+            return Ok((Vec::new(), Runs::new(&self.scratch)?));
+        };
+        loop {
+            let time = match rayon::yield_now() {
+                None => Duration::MAX,
+                Some(Yield::Executed) => Duration::ZERO,
+                Some(Yield::Idle) => Duration::from_micros(100),
+            };
+            match running.recv_timeout(time) {
+                Ok(sorted) => return sorted,
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(io::Error::other("the thread that sorts has failed"));
+                }
+            }
         }
     }
 
