@@ -27,7 +27,7 @@ proptest! {
     /// Cyclic graphs, all formats, all policies.
     #[test]
     fn every_frame_ends(
-        (graph, camera) in any_view(any_graph(1..7), 1..24),
+        (graph, camera) in any_view(any_graph(1..6), 1..24),
         seed: u64,
         overflow in prop_oneof![
             Just(Overflow::Trap), Just(Overflow::Wrap), Just(Overflow::Saturate)
@@ -43,8 +43,8 @@ proptest! {
             return Ok(());
         };
         let mut frame = Frame::new(setup.width, setup.height, false);
-        // A frame of 92 x 4 samples, seen from an eye on the object's face, took 99 million records.
-        let drawn = machine(overflow).render_within(&graph.view(), &setup, &mut frame, 500_000_000);
+        // With a level more, a frame of 92 x 4 samples, seen from an eye on the object's face, took 99 million records.
+        let drawn = machine(overflow).render_within(&graph.view(), &setup, &mut frame, 100_000_000);
         match drawn {
             Ok(stats) => prop_assert!(stats.is_some(), "this frame does not end"),
             Err(_) => prop_assert_eq!(overflow, Overflow::Trap),
