@@ -53,8 +53,6 @@ def _run(command, scenes, options, parse):
     words = command.split()
     if not words or words[0].startswith("-"):
         raise _refused(f"{command!r} is no command, such as \"info\" or \"bench quality\"")
-    if words[0] in ("completions", "man", "view"):
-        raise _refused(f"{words[0]}: it prints no JSON")
     # Results name scene files, so that of a `Scene` object stays beside them.
     results = options.get("results")
     beside = None if results is None else os.path.dirname(os.path.abspath(results))

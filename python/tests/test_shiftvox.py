@@ -166,6 +166,7 @@ def small(**settings):
         (lambda: small(background=(0, 0, 256)), "background: three numbers"),
         (lambda: shiftvox.run(""), "no command"),
         (lambda: shiftvox.run("man"), "man: it prints no JSON"),
+        (lambda: shiftvox.run("view", "bundled"), "view: it prints no JSON"),
         (lambda: shiftvox.run("model", print_hw=True), "no JSON document"),
         (lambda: shiftvox.Scene.from_numpy([[0, 0, 2**40]]), "indices: numbers from -2147483648"),
         (lambda: shiftvox.Scene.from_numpy([[0, 0, 0.5]]), "indices: float64"),

@@ -250,6 +250,15 @@ pub fn documents(words: impl IntoIterator<Item = OsString>) -> Result<String, Cl
         let message = error.render().to_string();
         CliError::usage(message.trim_end().trim_start_matches("error: "))
     })?;
+    let without = match cli.command {
+        Some(Command::View(_)) => "view",
+        Some(Command::Completions(_)) => "completions",
+        Some(Command::Man(_)) => "man",
+        _ => "",
+    };
+    if !without.is_empty() {
+        return Err(CliError::usage(format!("{without}: it prints no JSON")));
+    }
     let threads = cli.threads()?;
     let console = Console::keeping();
     let run = || run_command(cli, &matches, &console);

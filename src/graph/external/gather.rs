@@ -5,11 +5,9 @@
 
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
-use std::time::Duration;
+use std::sync::mpsc::{self, Receiver};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use rayon::Yield;
 use rayon::prelude::*;
 
 use super::buffer_sizes::BufferSizes;
@@ -20,13 +18,53 @@ use crate::graph::{Progress, Voxel};
 
 type Sorted = io::Result<(Vec<u128>, Runs)>;
 
+/// A run that no thread has begun to sort.
+#[derive(Debug)]
+struct Unsorted {
+    records: Vec<u128>,
+    corner: [i32; 3],
+    runs: Runs,
+}
+
+impl Unsorted {
+    /// Sorts and writes it, and returns the emptied memory.
+    fn sorted(self) -> Sorted {
+        let Self {
+            mut records,
+            corner,
+            mut runs,
+        } = self;
+        records
+            .par_iter_mut()
+            .for_each(|record| *record = placed(*record, corner));
+        records.par_sort_unstable();
+        records.dedup_by_key(|record| key(*record));
+        runs.add(&records)?;
+        records.clear();
+        Ok((records, runs))
+    }
+}
+
+/// The run is whose thread takes it first: one of the pool, or the one that waits for it. So threads of a pool that all
+/// wait still sort.
+#[derive(Debug)]
+struct Running {
+    unsorted: Arc<Mutex<Option<Unsorted>>>,
+    sorted: Receiver<Sorted>,
+}
+
+fn take(unsorted: &Mutex<Option<Unsorted>>) -> Option<Unsorted> {
+    let mut unsorted = unsorted.lock().unwrap_or_else(PoisonError::into_inner);
+    unsorted.take()
+}
+
 #[derive(Debug)]
 pub(super) struct Gather {
     sizes: BufferSizes,
     scratch: Arc<Scratch>,
     buffer: Vec<u128>,
-    /// Of the previous run, which is sorted and written meanwhile.
-    running: Option<Receiver<Sorted>>,
+    /// The previous run, which is sorted and written meanwhile.
+    running: Option<Running>,
     /// The corner from which each run is sorted.
     corners: Vec<[i32; 3]>,
     pub(super) min: [i32; 3],
@@ -71,49 +109,37 @@ impl Gather {
     }
 
     fn spill(&mut self) -> io::Result<()> {
-        let (spare, mut runs) = self.waited()?;
-        let mut records = std::mem::replace(&mut self.buffer, spare);
+        let (spare, runs) = self.waited()?;
+        let records = std::mem::replace(&mut self.buffer, spare);
         let corner = self.min;
         self.corners.push(corner);
-        let sort = move || -> Sorted {
-            records
-                .par_iter_mut()
-                .for_each(|record| *record = placed(*record, corner));
-            records.par_sort_unstable();
-            records.dedup_by_key(|record| key(*record));
-            runs.add(&records)?;
-            records.clear();
-            Ok((records, runs))
-        };
-        let (sender, receiver) = mpsc::channel();
+        let unsorted = Arc::new(Mutex::new(Some(Unsorted {
+            records,
+            corner,
+            runs,
+        })));
+        let (sender, sorted) = mpsc::channel();
+        let own = Arc::clone(&unsorted);
         rayon::spawn(move || {
-            if let Ok(sorted) = catch_unwind(AssertUnwindSafe(sort)) {
+            if let Some(run) = take(&own)
+                && let Ok(sorted) = catch_unwind(AssertUnwindSafe(|| run.sorted()))
+            {
                 let _ = sender.send(sorted);
             }
         });
-        self.running = Some(receiver);
+        self.running = Some(Running { unsorted, sorted });
         Ok(())
     }
 
-    /// A thread of a pool works for the pool meanwhile. If all of them only waited, none would sort.
     fn waited(&mut self) -> Sorted {
-        let Some(running) = self.running.take() else {
+        let Some(Running { unsorted, sorted }) = self.running.take() else {
             return Ok((Vec::new(), Runs::new(&self.scratch)?));
         };
-        loop {
-            let time = match rayon::yield_now() {
-                None => Duration::MAX,
-                Some(Yield::Executed) => Duration::ZERO,
-                Some(Yield::Idle) => Duration::from_micros(100),
-            };
-            match running.recv_timeout(time) {
-                Ok(sorted) => return sorted,
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => {
-                    return Err(io::Error::other("the thread that sorts has failed"));
-                }
-            }
+        if let Some(run) = take(&unsorted) {
+            return run.sorted();
         }
+        let failed = |_| Err(io::Error::other("a run could not be sorted"));
+        sorted.recv().unwrap_or_else(failed)
     }
 
     /// All voxels in Morton order from the lowest corner, and the number of runs.

@@ -80,6 +80,7 @@ fn refusals_leave_no_files() {
         );
         assert!(!folder.join("other").exists(), "{flags}");
     }
+    assert_eq!(fs::read_dir(folder.join("simulated")).unwrap().count(), 1);
     let kept = fs::read_to_string(folder.join("simulated/picture.png"));
     assert_eq!(kept.unwrap(), "mine");
 }
