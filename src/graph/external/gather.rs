@@ -45,8 +45,8 @@ impl Unsorted {
     }
 }
 
-/// The run is whose thread takes it first: one of the pool, or the one that waits for it. So threads of a pool that all
-/// wait still sort.
+/// The thread that takes the run first sorts it: one of the pool, or the one that waits for it. So it is sorted even if
+/// all threads of the pool wait.
 #[derive(Debug)]
 struct Running {
     unsorted: Arc<Mutex<Option<Unsorted>>>,
