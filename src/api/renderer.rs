@@ -517,7 +517,7 @@ mod tests {
                 .samples([1, 2, 4][round % 3])
                 .threads(round / 3);
             for (scene, (width, height)) in scenes.iter().flat_map(|scene| {
-                let sizes = [(40, 30), (15, 20), (15, 20), (1, 1)];
+                let sizes = [(24, 18), (12, 15), (12, 15), (1, 1)];
                 sizes.map(|size| (scene, size))
             }) {
                 let camera = Camera::fit(scene).azimuth(f64::from(width));

@@ -27,7 +27,7 @@ use crate::scene_table::SCENES;
 use crate::scenes::*;
 
 /// Cameras at each place, unless `SHIFTVOX_ROUNDS` sets another number.
-const ROUNDS: u32 = 3;
+const ROUNDS: u32 = 2;
 
 /// Most records of a frame, and of one under the rules that subdivide solids.
 const MOST_RECORDS: u64 = 2_000_000;
@@ -420,7 +420,7 @@ fn any_scene() -> impl Strategy<Value = Graph> {
 }
 
 proptest! {
-    #![proptest_config(cases(600))]
+    #![proptest_config(cases(400))]
 
     #[test]
     fn random_scenes_are_drawn_alike(

@@ -39,11 +39,11 @@ pub(crate) fn views() -> Vec<(String, Graph, FrameSetup)> {
     let along = [([0.7, -4.0, 0.6], [0.7, 0.0, 0.6])];
     let mut all = Vec::new();
     for (spec, side, views) in [
-        ("terrain,depth=8", 256, &outside[..]),
-        ("menger,depth=4", 256, &outside),
-        ("menger,depth=3", 256, &inside),
-        ("sierpinski,depth=9", 256, &inside),
-        ("sphere,depth=6", 256, &inside),
+        ("terrain,depth=8", 160, &outside[..]),
+        ("menger,depth=4", 160, &outside),
+        ("menger,depth=3", 160, &inside),
+        ("sierpinski,depth=9", 160, &inside),
+        ("sphere,depth=6", 160, &inside),
         ("sphere,depth=1", 17, &along),
     ] {
         for &(eye, target) in views {
