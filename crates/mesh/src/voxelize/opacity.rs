@@ -21,8 +21,9 @@ const ALL: u64 = u64::MAX;
 const ALL_COLUMNS: u8 = 0b1111;
 /// Nodes before a node that count: steeper walls are seen along another axis.
 const REACH: u32 = 3;
-/// Points of a node that is opaque with its column: with fewer, walls would grow by a voxel.
-const LEAST_POINTS: u32 = 16;
+/// Points of a node that is opaque with its column: half of them. One node of each column along a flat wall's main axis
+/// has as many. With fewer, walls would grow by a voxel; with more, they would have holes.
+const LEAST_POINTS: u32 = (POINTS * POINTS / 2) as u32;
 /// A pane seen at an angle of cosine `c` is crossed in about `1/c` voxels, each of which blends `c^2` of its opacity
 /// from the front: `c` in all, not 1. A third of that opacity from the other sides adds `(1 - c^2)/3c`.
 const SHEET: u32 = 3;

@@ -28,9 +28,9 @@ fn opacities_are_as_recorded() {
         xxh3_64(&bytes)
     });
     let expected = [
-        0x1469_782e_90a8_32fe,
+        0x3419_ac21_1a10_80ea,
         0x5ce5_731c_5815_533f,
-        0x3472_e6aa_92d8_deae,
+        0xe85f_12bf_e09d_7f81,
     ];
     assert_eq!(recorded, expected, "{recorded:#x?}");
 }
