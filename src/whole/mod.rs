@@ -191,7 +191,7 @@ pub enum WholeError {
     /// Neither the folder nor the one above it exists.
     #[error("{0}: there is no such folder")]
     NoFolder(PathBuf),
-    #[error("{path}: {source}")]
+    #[error("{path}: cannot write it: {source}")]
     Io {
         /// The file, or its folder.
         path: PathBuf,

@@ -53,7 +53,7 @@ impl Made {
     ) -> Result<Self, CliError> {
         let mut made = Self::of_graph(None);
         let run = |e: &dyn std::fmt::Display| CliError::new(Kind::Run, e);
-        for choice in choices {
+        let mut add = |choice: &Choice| {
             match *choice {
                 Choice::Voxels(options, _) => {
                     let opacities = args.opacities || options.coverage.blends();
@@ -71,7 +71,7 @@ impl Made {
                 Choice::Triangles { one_of: 1, .. } => made.mesh_bytes = compact(&mesh).1,
                 Choice::Triangles { one_of, .. } => {
                     if made.decimated.iter().any(|((of, ..), _)| *of == one_of) {
-                        continue;
+                        return Ok(());
                     }
                     let how = Decimation::Count(mesh.triangles().len() / one_of as usize);
                     let left = timed(|| decimate(&mesh, how));
@@ -108,6 +108,15 @@ impl Made {
                         *slot = Some((TexturedFile::from_bytes(&bytes)?, ms));
                     }
                 }
+            }
+            Ok(())
+        };
+        for choice in choices {
+            match add(choice).map_err(|error: CliError| error.at(name)) {
+                Err(error) if error.kind == Kind::Input => {
+                    console.note(format!("{error}; a method is left out"));
+                }
+                added => added?,
             }
         }
         made.mesh = Some(mesh);

@@ -10,9 +10,7 @@ use crate::{ColorSpace, Material};
 pub(super) struct Library {
     /// In the order of the file.
     pub(super) materials: Vec<(Material, Pictures)>,
-    pub(super) odd_line: Option<usize>,
-    /// Materials that emit light.
-    pub(super) emissive: usize,
+    pub(super) warnings: Vec<String>,
 }
 
 /// Names of the pictures that a material's colour and opacity are multiplied by.
@@ -29,6 +27,8 @@ pub(super) struct Place {
     pub(super) scale: [f64; 2],
     pub(super) offset: [f64; 2],
     pub(super) wrap: Wrap,
+    /// Its brightness changes.
+    has_levels: bool,
 }
 
 impl Default for Place {
@@ -37,6 +37,7 @@ impl Default for Place {
             scale: [1.0; 2],
             offset: [0.0; 2],
             wrap: Wrap::Repeat,
+            has_levels: false,
         }
     }
 }
@@ -48,6 +49,8 @@ struct Found {
     alpha: f32,
     pictures: Pictures,
     is_emissive: bool,
+    /// It colours the light that it lets through.
+    is_filter: bool,
 }
 
 pub(super) fn read(bytes: &[u8], colors: ColorSpace) -> Library {
@@ -70,12 +73,13 @@ pub(super) fn read(bytes: &[u8], colors: ColorSpace) -> Library {
                 });
                 true
             }
-            ("ke", Some(last)) => {
-                last.is_emissive |= numbers.any(|number| number > Some(0.0));
+            ("ke" | "map_ke", Some(last)) => {
+                last.is_emissive |= key == "map_ke" || numbers.any(|number| number > Some(0.0));
                 true
             }
-            ("map_ke", Some(last)) => {
-                last.is_emissive = true;
+            ("tf", Some(last)) => {
+                let first = numbers.next();
+                last.is_filter = numbers.take(2).any(|number| Some(number) != first);
                 true
             }
             ("kd", Some(last)) => {
@@ -118,12 +122,26 @@ pub(super) fn read(bytes: &[u8], colors: ColorSpace) -> Library {
             odd_line.get_or_insert(number);
         }
     }
-    let emissive = found.iter().filter(|found| found.is_emissive).count();
+    let odd = odd_line.map(|line| format!("line {line} is not understood and was passed over"));
+    let count = |is_meant: fn(&&Found) -> bool| found.iter().filter(is_meant).count();
+    let counts = [
+        (count(|of| of.is_emissive), "emit light, which is not drawn"),
+        (
+            count(|of| of.is_filter && of.alpha < 1.0),
+            "colour the light behind them (Tf), which is not drawn",
+        ),
+        (
+            count(|of| of.pictures.place.has_levels),
+            "change the brightness of a picture (-mm), which is not drawn",
+        ),
+    ];
+    let counts = counts.into_iter().filter(|(count, _)| *count > 0);
+    let counts = counts.map(|(count, what)| format!("{count} materials {what}"));
+    let warnings = odd.into_iter().chain(counts).collect();
     let materials = found.into_iter().map(|found| found.material(colors));
     Library {
         materials: materials.collect(),
-        odd_line,
-        emissive,
+        warnings,
     }
 }
 
@@ -150,6 +168,7 @@ fn picture(mut rest: &str) -> Option<(String, Place)> {
                 ("-s", Ok(number)) if k < 2 => place.scale[k] = number,
                 ("-o", Ok(number)) if k < 2 => place.offset[k] = number,
                 ("-clamp", _) if word == "on" => place.wrap = Wrap::Clamp,
+                ("-mm", number) => place.has_levels |= number != Ok([0.0, 1.0][k]),
                 _ => {}
             }
             rest = after.trim_start();

@@ -45,6 +45,8 @@ struct File {
     /// Positions, and colours where they have any, as written.
     positions: List<([f64; 3], Option<[f32; 3]>)>,
     brightest: f64,
+    /// Positions that have colours of ZBrush.
+    painted: usize,
     texture_coordinates: List<[f64; 2]>,
     normals: List<[f64; 3]>,
     /// Numbers of position, texture coordinate and normal of each corner, from 0.
@@ -107,6 +109,18 @@ impl File {
                 }
                 self.positions.push((position, color));
             }
+            // ZBrush: mask, red, green and blue of up to 64 positions, in two digits each.
+            "#MRGB" => {
+                for digits in rest().as_bytes().as_chunks::<8>().0 {
+                    let digits = std::str::from_utf8(digits).unwrap_or_default();
+                    let color = u32::from_str_radix(digits, 16).unwrap_or(u32::MAX);
+                    let [_, color @ ..] = color.to_be_bytes();
+                    if let Some((_, of)) = self.positions.get_mut(self.painted) {
+                        *of = Some(color.map(|c| f32::from(c) / 255.0));
+                    }
+                    self.painted += 1;
+                }
+            }
             "vt" => {
                 let wrong = || wrong("texture coordinate", "\"vt u v\"");
                 let given = numbers(&mut words).ok_or_else(wrong)?;
@@ -116,7 +130,7 @@ impl File {
                 let wrong = || wrong("normal", "\"vn x y z\"");
                 self.normals.push(numbers(&mut words).ok_or_else(wrong)?);
             }
-            "f" => {
+            "f" | "fo" => {
                 let begin = self.corners.len();
                 for word in words {
                     let corner = self.corner(word, number)?.ok_or_else(|| {
@@ -198,16 +212,8 @@ impl File {
                 ));
             }
         };
-        if let Some(line) = library.odd_line {
-            builder.warn(format!(
-                "{name}: line {line} is not understood and was passed over"
-            ));
-        }
-        if library.emissive > 0 {
-            let count = library.emissive;
-            builder.warn(format!(
-                "{name}: {count} materials emit light, which is not drawn"
-            ));
+        for warning in &library.warnings {
+            builder.warn(format!("{name}: {warning}"));
         }
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
         let path = |name: String| folder.join(name).to_string_lossy().into_owned();

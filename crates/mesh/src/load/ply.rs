@@ -8,7 +8,7 @@
 use std::collections::HashMap;
 
 use shiftvox::scene::numbers::{Number, Scalar};
-use shiftvox::scene::ply::{PlyFile, Row};
+use shiftvox::scene::ply::{Element, PlyFile, Row};
 
 use super::texture::{Parts, Textures};
 use super::{Beside, Fault, Place, Problem, check_corners, polygon};
@@ -51,7 +51,6 @@ pub(super) fn read(
         builder.warn("colours were passed over: the file has a texture");
     }
     let colors = vertices.colors().filter(|_| !is_textured);
-    let is_wide = colors.map(|at| at.map(|k| vertices.properties[k].scalar == Scalar::U16));
     let material = if colors.is_some() { white } else { default };
     let mut kept = Vertices {
         normals: List::within(builder.folder()),
@@ -78,13 +77,10 @@ pub(super) fn read(
                 file.rows(element, [None; 2], |row| {
                     has_opacities |= opacity.is_some_and(|at| is_clear(&row, at));
                     let position = positions.map(|k| row.values[k].real());
-                    match colors.zip(is_wide) {
+                    match colors {
                         None => builder.position(position),
-                        Some((at, is_wide)) => {
-                            let mut color = [0; 3];
-                            for k in 0..3 {
-                                color[k] = channel("vertex", &row, at[k], is_wide[k])?;
-                            }
+                        Some(at) => {
+                            let color = color("vertex", &row, element, at)?;
                             builder.colored_position(position, color)
                         }
                     };
@@ -112,11 +108,7 @@ pub(super) fn read(
                     has_opacities |= opacity.is_some_and(|at| is_clear(&row, at));
                     let mut material = material;
                     if let Some(at) = face_colors {
-                        let mut color = [0; 3];
-                        for k in 0..3 {
-                            let is_wide = element.properties[at[k]].scalar == Scalar::U16;
-                            color[k] = channel("face", &row, at[k], is_wide)?;
-                        }
+                        let color = color("face", &row, element, at)?;
                         let name = "face colours";
                         let new = || builder.material(Material::of_srgb(name, color));
                         material = *of_color.entry(color).or_insert_with(new);
@@ -178,15 +170,22 @@ fn textured(names: &[String], beside: &Beside<'_>, builder: &mut MeshBuilder) ->
     materials
 }
 
-fn channel(kind: &str, row: &Row<'_>, at: usize, is_wide: bool) -> Result<u8, Problem> {
-    let value = match row.values[at] {
-        Number::Whole(n) if is_wide => Number::Whole(n >> 8),
-        value => value,
-    };
-    value.channel().ok_or_else(|| {
-        let expected = "colours from 0 to 255, declared as uchar, or from 0 to 1 as real numbers";
-        fault(kind, row, expected.to_owned(), value)
-    })
+fn color(kind: &str, row: &Row<'_>, of: &Element, at: [usize; 3]) -> Result<[u8; 3], Problem> {
+    let mut color = [0; 3];
+    for (channel, at) in color.iter_mut().zip(at) {
+        let value = match row.values[at] {
+            Number::Whole(n) if of.properties[at].scalar == Scalar::U16 => Number::Whole(n >> 8),
+            value => value,
+        };
+        *channel = value.channel().ok_or_else(|| {
+            let part = format!("{kind} {}", row.number);
+            let expected =
+                "colours from 0 to 255, declared as uchar, or from 0 to 1 as real numbers";
+            let advice = "export the colours as uchar";
+            Fault::new(part, row.offset, expected, value.to_string(), advice)
+        })?;
+    }
+    Ok(color)
 }
 
 fn fault(kind: &str, row: &Row<'_>, expected: String, found: Number) -> Problem {

@@ -91,22 +91,29 @@ fn is(word: &[u8], expected: &str) -> bool {
     word.eq_ignore_ascii_case(expected.as_bytes())
 }
 
-/// The words of a facet; `#` is a number.
+/// The words of a facet. `#` is a number, and `*`, of the normal, anything: some programs write `-nan(ind)`.
 const FACET: &str =
-    "facet normal # # # outer loop vertex # # # vertex # # # vertex # # # endloop endfacet";
+    "facet normal * * * outer loop vertex # # # vertex # # # vertex # # # endloop endfacet";
 
 /// The corners of the next facet, or `None` at the end of the last solid. An error is the word that is wrong.
 fn facet<'t>(
     words: &mut impl Iterator<Item = &'t [u8]>,
 ) -> Result<Option<Corners>, Option<&'t [u8]>> {
-    let mut numbers = Vec::with_capacity(12);
+    let mut numbers = Vec::with_capacity(9);
     for (place, expected) in FACET.split(' ').enumerate() {
         let mut word = words.next();
-        while place == 0 && word.is_some_and(|word| is(word, "endsolid")) {
-            if !words.any(|word| is(word, "solid")) {
-                return Ok(None);
+        while let Some(end) = word.filter(|_| place == 0) {
+            if is(end, "endsolid") {
+                // Some programs write facets between solids.
+                word = words.find(|word| is(word, "solid") || is(word, expected));
+                if word.is_none() {
+                    return Ok(None);
+                }
+            } else if is(end, "solid") {
+                word = words.next();
+            } else {
+                break;
             }
-            word = words.next();
         }
         match word {
             Some(word) if expected == "#" => {
@@ -114,13 +121,11 @@ fn facet<'t>(
                 let number = number.and_then(|number| number.parse::<f32>().ok());
                 numbers.push(number.ok_or(Some(word))?);
             }
-            Some(word) if is(word, expected) => {}
+            Some(word) if is(word, expected) || expected == "*" => {}
             other => return Err(other),
         }
     }
-    // The normal comes first.
-    let corners = numbers[3..].as_chunks::<3>().0;
-    Ok(corners.try_into().ok())
+    Ok(numbers.as_chunks::<3>().0.try_into().ok())
 }
 
 fn cut_binary(bytes: &[u8]) -> Box<Fault> {

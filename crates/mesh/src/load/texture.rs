@@ -37,14 +37,47 @@ impl Picture {
         }
         let picture = DynamicImage::from_decoder(decoder).map_err(told)?;
         let mut texels = picture.into_rgba8().as_chunks::<4>().0.to_vec();
-        // Some programs write 32 bits per texel and mean 24.
-        if format == ImageFormat::Tga && texels.iter().all(|texel| texel[3] == 0) {
-            texels.iter_mut().for_each(|texel| texel[3] = 255);
+        if format == ImageFormat::Tga {
+            read_opacity_bits(bytes, &mut texels);
+            // Some programs write 32 bits per texel and mean 24.
+            if texels.iter().all(|texel| texel[3] == 0) {
+                texels.iter_mut().for_each(|texel| texel[3] = 255);
+            }
         }
         Ok(Self {
             size: [width as usize, height as usize],
             texels,
         })
+    }
+}
+
+/// Whether a JPEG has no end after its first scan. Its decoder fills up what is not there.
+fn is_cut(bytes: &[u8]) -> bool {
+    let mut rest = bytes.strip_prefix(&[0xff, 0xd8]).unwrap_or_default();
+    while let &[0xff, mark, high, low, ..] = rest {
+        if mark == 0xda {
+            return !rest.windows(2).any(|pair| pair == [0xff, 0xd9]);
+        }
+        let length = usize::from(u16::from_be_bytes([high, low]));
+        rest = rest.get(2 + length..).unwrap_or_default();
+    }
+    false
+}
+
+/// Opacity bits of a TGA of 16 bits that says it has them. The decoder leaves them out, but as a picture of grey and
+/// opacity it gives the bytes of a texel.
+fn read_opacity_bits(bytes: &[u8], texels: &mut [[u8; 4]]) {
+    let (2 | 10, 16, 1) = (bytes[2], bytes[16], bytes[17] & 15) else {
+        return;
+    };
+    let mut bytes = bytes.to_vec();
+    bytes[2] += 1;
+    bytes[17] += 7;
+    let reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Tga);
+    let halves = reader.decode().map(DynamicImage::into_luma_alpha8);
+    let halves = halves.iter().flat_map(|halves| halves.pixels());
+    for (texel, half) in texels.iter_mut().zip(halves) {
+        texel[3] = if half.0[1] < 128 { 0 } else { 255 };
     }
 }
 
@@ -86,7 +119,7 @@ pub(super) struct Textures {
     /// By their parts.
     made: HashMap<String, Option<Arc<Texture>>>,
     bytes: u64,
-    failed: Vec<(String, String)>,
+    pub(super) failed: Vec<String>,
 }
 
 impl Textures {
@@ -123,20 +156,27 @@ impl Textures {
         }
         let left = MOST_BYTES.saturating_sub(self.bytes);
         let file = read(name).map_err(|error| error.to_string());
-        let picture = file.and_then(|bytes| Picture::decode(name, &bytes, left));
-        let picture = picture.map_err(|reason| self.failed.push((name.to_owned(), reason)));
-        let picture = picture.ok().map(Rc::new);
+        let picture = file.and_then(|bytes| {
+            let picture = Picture::decode(name, &bytes, left)?;
+            Ok((picture, is_cut(&bytes)))
+        });
+        let told = match &picture {
+            Ok((_, false)) => None,
+            Ok(_) => Some("is cut short: its last part may be grey".to_owned()),
+            Err(reason) => Some(format!(
+                "cannot be read ({reason}); what has it keeps its plain colour"
+            )),
+        };
+        let told = told.map(|told| format!("the texture {name} {told}"));
+        self.failed.extend(told);
+        let picture = picture.ok().map(|(picture, _)| Rc::new(picture));
         self.bytes += picture.as_ref().map_or(0, |p| 4 * p.texels.len() as u64);
         self.pictures.insert(name.to_owned(), picture.clone());
         picture
     }
 
     pub(super) fn tell(&self, builder: &mut MeshBuilder) {
-        for (name, reason) in &self.failed {
-            builder.warn(format!(
-                "the texture {name} cannot be read ({reason}); what has it keeps its plain colour"
-            ));
-        }
+        self.failed.iter().for_each(|warning| builder.warn(warning));
     }
 }
 

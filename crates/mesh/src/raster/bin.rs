@@ -206,7 +206,9 @@ impl Buffer<'_> {
                                 continue;
                             }
                         }
-                        if order == Ordering::Equal {
+                        // So does what is opaque of it.
+                        let known = self.triangle[at + sample] as usize;
+                        if order == Ordering::Equal && !surface.is_opaque(known) {
                             continue;
                         }
                         self.nearness[at + sample] = near;
@@ -220,7 +222,7 @@ impl Buffer<'_> {
 
     /// Compares something with the opaque triangle of a sample so far: greater counts before it. At one depth a triangle
     /// that faces the eye counts before one that turns its back. Triangles come in the order of their numbers, and so what
-    /// counts is never farther behind the nearest than by twice the slack.
+    /// counts is never farther behind the nearest than by three times the slack.
     #[inline]
     fn order(&self, at: usize, nearness: f64, side: Side) -> Ordering {
         let known = self.nearness[at];

@@ -1,5 +1,5 @@
-//! Equal triangles, looked at once: those with corners at the same points of the lattice and the same normals there, in
-//! the same order. The first counts with the opacities of all added up and their colours, averaged by opacity.
+//! Equal triangles, looked at once: those with corners at the same points of the lattice and the same normals there and
+//! places in one texture, in the same order. The first counts with the opacities of all added up and their colours, averaged by opacity.
 
 use std::collections::HashMap;
 
@@ -7,10 +7,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Grid;
-use crate::{Surface, Triangle};
+use crate::{Sampler, Surface, Triangle};
 use shiftvox::split_mix::mix;
 
-type Key = ([[i64; 3]; 3], [[u64; 3]; 3]);
+/// Corners, normals, the address of a texture and places in it.
+type Key = ([[i64; 3]; 3], [[u64; 3]; 3], Option<(usize, [[u32; 2]; 3])>);
 
 pub(super) struct Distinct<'s> {
     /// Numbers of all triangles that repeat no earlier one, rising.
@@ -39,7 +40,12 @@ impl<'s> Distinct<'s> {
             for number in alike.iter().map(|&hash| hash as u32) {
                 let triangle = surface.triangle(number as usize);
                 let bits = |n: DVec3| n.to_array().map(|c| (c + 0.0).to_bits());
-                let key = (grid.corners(surface, number), triangle.normals.map(bits));
+                let texture = triangle.sampler.map(|Sampler { texture, places }| {
+                    let places = places.map(|place| place.map(f32::to_bits));
+                    (std::ptr::from_ref(texture).addr(), places)
+                });
+                let corners = grid.corners(surface, number);
+                let key = (corners, triangle.normals.map(bits), texture);
                 let first = *firsts.entry(key).or_insert(number);
                 if first == number {
                     continue;

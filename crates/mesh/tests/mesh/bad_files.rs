@@ -57,6 +57,7 @@ gltf | /accessors/0: {"componentType": 5126, "count": 4, "type": "VEC3", "sparse
 gltf | /accessors/0: {"componentType": 5126, "count": 1000000000000000000, "type": "VEC3", "sparse": {"count": 0, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}} | at most 16 triangles for a byte of the file
 gltf | /nodes/0: {"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"SCALE": 9}}}} | accessor 9: expected an accessor of this number
 PLY  | ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty int y\nproperty int z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n1 2 3\n2 0 7\n | tristrips 0 at byte 157: expected corners from 0 to 0, found 7
+GLTF | {"asset": {"version": "1.0"}, "meshes": {}} | expected a sequence at line 1 column 40; export as glTF 2.0
 GLTF | {"asset":                              | JSON at line 1: expected glTF 2.0
 GLB  | glTFxx                                 | header at byte 0: expected 12 bytes
 GLB  | glTF\1\0\0\0\0\0\0\0                 | header at byte 4: expected version 2, found 1; export as glTF 2.0

@@ -54,7 +54,7 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
         f -5 -4 -3 -2 -1\ng other\nusemtl blue\nf 1/ 2/ 3/\nl 1 2\np 1\nusemtl lost\nf 1 2 5\n\
         usemtl gone\nf 1 2 3\nmtllib none.mtl\n";
     let mtl = "# c\nKd 1 1 1\nNewMtl red one\n kd 0.5 0 0\nTR 0.25\nKe 0 0 0\nKe 0 2 0\nmap_Ke a.png\nnewmtl blue\nKd 0.5\nKd 0 0 1\nd -halo 0.5\n\
-        map_Kd a.png\nKd spectral x.rfl\nnewmtl gone\nd 0\nmap_Kd -clamp on\nmap_ke a.png\nnewmtl \u{fc}\nKe 0 0 0\n";
+        map_Kd -mm 0 2 a.png\nKd spectral x.rfl\nTf 1 0 0\nnewmtl gone\nd 0\nmap_Kd -clamp on\nmap_ke a.png\nnewmtl \u{fc}\nKe 0 0 0\n";
     // sRGB 0.5 is 0.214 of the light; linear 0.5 stays.
     for (mtl_colors, red) in [(ColorSpace::Srgb, 0.214), (ColorSpace::Linear, 0.5)] {
         let mesh = obj(text, mtl, mtl_colors);
@@ -74,6 +74,8 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
             "1 of 6 triangles of a material with opacity 0",
             "2 lines, points and curves",
             "a b.mtl: 2 materials emit light",
+            "a b.mtl: 1 materials colour the light behind them",
+            "a b.mtl: 1 materials change the brightness of a picture",
         ];
         has(mesh.warnings(), &warnings);
     }
@@ -98,6 +100,13 @@ fn obj_files_may_have_coloured_vertices_and_odd_lines() {
     let mesh = load(text.as_bytes(), MeshFormat::Obj).unwrap();
     assert_eq!(mesh.vertex_colors(), [[200, 60, 10], [255, 1, 0], [0; 3]]);
     has(mesh.warnings(), &["taken as 0 to 255"]);
+    // As ZBrush writes them, and an older word for a face.
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\n#MRGB ff0a0b0cffff0001\n#MRGB ff00ff02\nfo 1 2 3\n";
+    let mesh = load(text.as_bytes(), MeshFormat::Obj).unwrap();
+    assert_eq!(
+        mesh.vertex_colors(),
+        [[10, 11, 12], [255, 0, 1], [0, 255, 2]]
+    );
     let text = b"v 0 0 0\rv 1 0 0\rv 1 1 0\rf 1 2 3\r";
     assert_eq!(load(text, MeshFormat::Obj).unwrap().triangles().len(), 1);
     let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\ncurv 0 1 1 2\nl 1 2\n";
@@ -163,13 +172,17 @@ fn text_stl_files_have_several_solids() {
         let corner = |x: u32, y: u32| format!("vertex {x} {y} {z}\n");
         let corners = [corner(0, 0), corner(1, 0), corner(0, 1)].concat();
         format!(
-            "solid {name}\nfacet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\nendsolid {name}\n"
+            "solid {name}\nfacet normal 0 -nan(ind) 1\nouter loop\n{corners}endloop\nendfacet\nendsolid {name}\n"
         )
     };
     let text = ["a", "facet", "solid"].map(|name| solid(name, name.len() as u32));
+    // A facet without a solid.
+    let loose = solid("", 9);
+    let loose = &loose["solid \n".len()..loose.len() - "endsolid \n".len()];
+    let text = [&text[0], loose, &text[1], &text[2]];
     let mesh = load(text.concat().as_bytes(), MeshFormat::Stl).unwrap();
     let heights: Vec<f32> = soup(&mesh).iter().map(|corners| corners[0][2]).collect();
-    assert_eq!(heights, [1.0, 5.0, 5.0]);
+    assert_eq!(heights, [1.0, 9.0, 5.0, 5.0]);
 }
 
 /// Also where all digits of a line are those of whole numbers.

@@ -173,7 +173,7 @@ fn what_is_not_drawn_is_warned_of() {
     json["accessors"].as_array_mut().unwrap().push(colors);
     let mesh = mesh_of(&json);
     let warnings = [
-        "opacities of vertices were passed over",
+        "1 primitives have opacities of vertices",
         "1 materials emit light",
         "1 materials transmit light",
         "1 primitives have a texture, but no texture coordinates",
@@ -192,6 +192,12 @@ fn what_is_not_drawn_is_warned_of() {
         "2 primitives end within a triangle, which was passed over",
     ];
     has(mesh_of(&json).warnings(), &warnings);
+    let instances = json!({"attributes": {"TRANSLATION": 0, "_COLOR_0": 0}});
+    json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = instances;
+    has(
+        mesh_of(&json).warnings(),
+        &["1 nodes have colours of instances"],
+    );
 }
 
 #[test]

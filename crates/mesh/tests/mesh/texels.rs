@@ -154,7 +154,8 @@ fn opacities_are_shares_of_light() {
 #[test]
 fn of_layers_the_front_one_counts_first() {
     let folder = tempfile::tempdir().unwrap();
-    let mtl = "newmtl red\nKd 1 0 0\nd 0.5\nnewmtl green\nKd 0 1 0\nd 0.5\nnewmtl blue\nKd 0 0 1\n";
+    let mtl = "newmtl red\nKd 1 0 0\nd 0.5\nnewmtl green\nKd 0 1 0\nd 0.5\nnewmtl blue\nKd 0 0 1\n\
+        newmtl card\nmap_Kd -clamp on a.png\n";
     fs::write(folder.path().join("a.mtl"), mtl).unwrap();
     let square = |z: f64, name: &str| {
         format!("usemtl {name}\nv 0 0 {z}\nv 1 0 {z}\nv 1 1 {z}\nv 0 1 {z}\nf -4 -3 -2 -1\n")
@@ -162,19 +163,30 @@ fn of_layers_the_front_one_counts_first() {
     // Out of order, and red has two sides.
     let squares = [(0.0, "green"), (-1.0, "blue"), (0.1, "red"), (0.1, "red")];
     let squares: String = squares.map(|(z, name)| square(z, name)).concat();
-    fs::write(
-        folder.path().join("a.obj"),
-        format!("mtllib a.mtl\n{squares}"),
-    )
-    .unwrap();
-    let colors = ColorSpace::default();
-    let mesh = read_mesh(&folder.path().join("a.obj"), colors, None, &Silent)
-        .unwrap()
-        .0;
-    let drawn = seen(&mesh, 4, 4);
+    let mesh_of = |text: String| {
+        let path = folder.path().join("a.obj");
+        fs::write(&path, "mtllib a.mtl\n".to_owned() + &text).unwrap();
+        read_mesh(&path, ColorSpace::default(), None, &Silent)
+            .unwrap()
+            .0
+    };
+    let drawn = seen(&mesh_of(squares), 4, 4);
     // Half red, a quarter green, a quarter blue.
     let [half, quarter] = [0.5, 0.25].map(linear_to_srgb);
     assert_eq!(drawn.rgba[5], [half, quarter, quarter, 255]);
+    // The opaque part of a card, too, lies on a wall in its plane.
+    let mut picture = RgbaImage::from_pixel(2, 2, Rgba([255, 255, 0, 255]));
+    picture.put_pixel(1, 1, Rgba([0; 4]));
+    picture.save(folder.path().join("a.png")).unwrap();
+    let card = "usemtl card\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf -4/1 -3/2 -2/3 -1/4\n";
+    let mesh = mesh_of(square(0.0, "blue") + card);
+    let drawn = seen(&mesh, 4, 1);
+    let corners = [0, 15].map(|pixel| drawn.rgba[pixel]);
+    assert_eq!(corners, [[255, 255, 0, 255], [0, 0, 255, 255]]);
+    // A voxel shows the mean of both.
+    let mut voxels = voxels(&mesh, 3).into_iter();
+    let voxel = voxels.find(|voxel| voxel.index[..2] == [1, 6]);
+    assert_eq!(voxel.map(|voxel| voxel.color), Some([188; 3]));
 }
 
 #[test]

@@ -103,6 +103,17 @@ fn obj_files_have_textures() {
     let mesh = read(&at.join("a.obj"));
     check(&mesh, 2, left, 0.02);
     assert_eq!(Surface::triangle(&mesh, 2).at([1.0 / 3.0; 3], 0.0).1, 1.0);
+    // 16 bits per texel, the first of which is opacity: one is clear.
+    let tga = [
+        &[0, 0, 2][..],
+        &[0; 9],
+        &[2, 0, 1, 0, 16, 1],
+        &[0, 124, 31, 128],
+    ];
+    fs::write(picture.with_extension("tga"), tga.concat()).unwrap();
+    let mesh = read(&at.join("a.obj"));
+    let opacity = |triangle| Surface::triangle(&mesh, triangle).at([1.0 / 3.0; 3], 0.0).1;
+    assert!(opacity(0) < 0.5 && opacity(2) > 0.5);
     // The middle of the third triangle is at (0.7, 0.37), of the fourth at (-3.77, 5.5).
     for (options, third, fourth) in [
         ("-clamp on -s 1 1 1", right, left),
@@ -120,6 +131,11 @@ fn obj_files_have_textures() {
         check(&mesh, 3, fourth, 0.02);
     }
     fs::write(materials.join("a.mtl"), mtl).unwrap();
+    let jpeg = halves([255, 255, 0], [0, 0, 255], ImageFormat::Jpeg);
+    fs::write(&picture, &jpeg[..jpeg.len() - 9]).unwrap();
+    let mesh = read(&at.join("a.obj"));
+    has(mesh.warnings(), &["wood grain.png is cut short"]);
+    check(&mesh, 0, left, 0.02);
     // Other capitals, and a face without coordinates.
     fs::write(materials.join("a.mtl"), mtl.replace("map_Kd", "MAP_kd")).unwrap();
     fs::write(
@@ -320,6 +336,18 @@ fn gltf_files_have_textures() {
             0.001,
         );
     }
+    // A WebP that cannot be read, in place of which there is a PNG.
+    let source = json!({"EXT_texture_webp": {"source": 1}});
+    json["textures"] = json!([{"extensions": source, "sampler": 0, "source": 0}]);
+    json["images"] = json!([picture(), {"uri": "none.webp"}]);
+    fs::write(&path, json.to_string()).unwrap();
+    let mesh = read(&path);
+    assert_eq!(mesh.warnings(), [""; 0]);
+    check(&mesh, 0, green, 0.001);
+    json["materials"][0]["alphaCutoff"] = json!(1.5);
+    fs::write(&path, json.to_string()).unwrap();
+    let told = "no triangle is seen: the textures are clear wherever a triangle shows them";
+    assert_eq!(read(&path).warnings(), [told]);
 }
 
 /// Opaque voxels have holes where a card is faint. Voxels with opacities do not.

@@ -95,27 +95,18 @@ impl<'b> Numbers<'b> {
             })
         };
         let (component, count) = (accessor.component_type, accessor.count);
+        let view = accessor.buffer_view;
+        let dense = || part(view, accessor.byte_offset, count, width, component);
         let Some(sparse) = &accessor.sparse else {
-            return part(
-                accessor.buffer_view,
-                accessor.byte_offset,
-                count,
-                width,
-                component,
-            );
+            return dense();
         };
         let (at, to) = (&sparse.indices, &sparse.values);
         let kind = at.component_type.unwrap_or(0);
-        let indices = part(Some(at.buffer_view), at.byte_offset, sparse.count, 1, kind)?;
-        let values = part(
-            Some(to.buffer_view),
-            to.byte_offset,
-            sparse.count,
-            width,
-            component,
-        )?;
-        let mut all = match accessor.buffer_view {
-            Some(view) => part(Some(view), accessor.byte_offset, count, width, component)?,
+        let few = sparse.count;
+        let indices = part(Some(at.buffer_view), at.byte_offset, few, 1, kind)?;
+        let values = part(Some(to.buffer_view), to.byte_offset, few, width, component)?;
+        let mut all = match view {
+            Some(_) => dense()?,
             None => Self {
                 layout: values.layout,
                 bytes: None,
@@ -197,10 +188,8 @@ impl<'b> Numbers<'b> {
             let (mut low, mut high) = (0, indices.count);
             while low < high {
                 let middle = low.midpoint(high);
-                match indices
-                    .index(middle)
-                    .map(|index| (index as usize).cmp(&element))
-                {
+                let index = indices.index(middle);
+                match index.map(|index| (index as usize).cmp(&element)) {
                     Some(Ordering::Less) => low = middle + 1,
                     Some(Ordering::Equal) => return values.raw(middle, k),
                     _ => high = middle,

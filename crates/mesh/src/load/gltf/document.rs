@@ -139,14 +139,10 @@ impl Material {
     }
 
     pub(super) fn transmits_light(&self) -> bool {
-        let MaterialExtensions {
-            transmission,
-            diffuse_transmission,
-            ..
-        } = &self.extensions;
+        let of = &self.extensions;
         let factors = [
-            &transmission["transmissionFactor"],
-            &diffuse_transmission["diffuseTransmissionFactor"],
+            &of.transmission["transmissionFactor"],
+            &of.diffuse_transmission["diffuseTransmissionFactor"],
         ];
         factors.iter().any(|factor| factor.as_f64() > Some(0.0))
     }

@@ -68,12 +68,8 @@ pub(super) fn read_binary(
         let end = begin.saturating_add(size);
         let Some(content) = bytes.get(begin..end) else {
             let found = bytes.len().saturating_sub(begin);
-            return Err(wrong(
-                "chunk",
-                at,
-                &format!("{size} bytes of content"),
-                found,
-            ));
+            let expected = format!("{size} bytes of content");
+            return Err(wrong("chunk", at, &expected, found));
         };
         match kind {
             JSON if json.is_none() => {
@@ -102,7 +98,9 @@ fn read_document(
             0 => Place::Line(error.line() as u64),
             _ => Place::Byte(offset),
         };
-        Fault::new("JSON", place, "glTF 2.0", error.to_string(), BROKEN)
+        // In version 1 lists are objects.
+        let advice = if error.is_data() { EXPORT } else { BROKEN };
+        Fault::new("JSON", place, "glTF 2.0", error.to_string(), advice)
     })?;
     document.check()?;
     let buffers = Buffers::read(&document, binary, beside)?;
@@ -139,12 +137,8 @@ impl<'f> Buffers<'f> {
             };
             if (bytes.len() as u64) < buffer.byte_length {
                 let expected = format!("{} bytes", buffer.byte_length);
-                return Err(broken(
-                    "buffer",
-                    number,
-                    &expected,
-                    &bytes.len().to_string(),
-                ));
+                let found = bytes.len().to_string();
+                return Err(broken("buffer", number, &expected, &found));
             }
             by_number.push(bytes);
         }

@@ -51,41 +51,58 @@ pub(super) fn find(
 ) -> Option<Arc<Texture>> {
     let found = document.textures.get(texture);
     let sampler = found.and_then(|texture| document.samplers.get(texture.sampler?));
-    let mut pictures = found.into_iter().flat_map(|texture| texture.pictures());
-    let image = pictures.find_map(|number| document.images.get(number));
-    let uri = image.and_then(|image| image.uri.as_deref());
-    let file = uri.filter(|uri| !uri.starts_with("data:")).map(unescaped);
-    let name = file.clone().unwrap_or_else(|| format!("number {texture}"));
-    let parts = Parts {
-        color: Some(&name),
-        opacity: None,
-        mode,
-        wrap: sampler.map_or([Wrap::Repeat; 2], |s| [s.wrap_s, s.wrap_t].map(wrap)),
-    };
-    textures.get(parts, |_| {
-        let missing = |what: &str| io::Error::new(ErrorKind::NotFound, what.to_owned());
-        let image = image.ok_or_else(|| {
-            let others = found.and_then(|texture| texture.extensions.as_object());
-            let mut others = others.into_iter().flat_map(|others| others.keys());
-            let other = others.find(|name| *name != "EXT_texture_webp");
-            let other = other.map_or(String::new(), |name| {
-                let command = match &name[..] {
-                    "KHR_texture_basisu" => "ktxdecompress",
-                    _ => "png --formats \"*\"",
-                };
-                format!(", but that of {name}; convert it with gltf-transform {command}")
-            });
-            missing(&format!("it has no picture of PNG, JPEG or WebP{other}"))
-        })?;
-        match (&file, uri) {
-            (Some(file), _) => beside(file),
-            (None, Some(uri)) => decoded(uri).ok_or_else(|| missing("its data is not in base64")),
-            (None, None) => {
-                let view = image.buffer_view.and_then(|v| document.buffer_views.get(v));
-                let bytes = view.and_then(|view| view_bytes(view, buffers));
-                let bytes = bytes.ok_or_else(|| missing("it is not in its buffer"))?;
-                Ok(bytes.to_vec())
+    let pictures = found.into_iter().flat_map(|texture| texture.pictures());
+    let images = pictures.filter_map(|number| Some((number, document.images.get(number)?)));
+    let mut images: Vec<_> = images.map(Some).collect();
+    if images.is_empty() {
+        images.push(None);
+    }
+    let before = textures.failed.len();
+    images.into_iter().find_map(|image| {
+        let failed = before..textures.failed.len();
+        let (number, image) = image.unzip();
+        let uri = image.and_then(|image| image.uri.as_deref());
+        let file = uri.filter(|uri| !uri.starts_with("data:")).map(unescaped);
+        let name = file.clone().unwrap_or_else(|| match number {
+            Some(image) => format!("image {image}"),
+            None => format!("number {texture}"),
+        });
+        let parts = Parts {
+            color: Some(&name),
+            opacity: None,
+            mode,
+            wrap: sampler.map_or([Wrap::Repeat; 2], |s| [s.wrap_s, s.wrap_t].map(wrap)),
+        };
+        let made = textures.get(parts, |_| {
+            let missing = |what: &str| io::Error::new(ErrorKind::NotFound, what.to_owned());
+            let image = image.ok_or_else(|| {
+                let others = found.and_then(|texture| texture.extensions.as_object());
+                let mut others = others.into_iter().flat_map(|others| others.keys());
+                let other = others.find(|name| *name != "EXT_texture_webp");
+                let other = other.map_or(String::new(), |name| {
+                    let command = match &name[..] {
+                        "KHR_texture_basisu" => "ktxdecompress",
+                        _ => "png --formats \"*\"",
+                    };
+                    format!(", but that of {name}; convert it with gltf-transform {command}")
+                });
+                missing(&format!("it has no picture of PNG, JPEG or WebP{other}"))
+            })?;
+            match (&file, uri) {
+                (Some(file), _) => beside(file),
+                (None, Some(uri)) => {
+                    decoded(uri).ok_or_else(|| missing("its data is not in base64"))
+                }
+                (None, None) => {
+                    let view = image.buffer_view.and_then(|v| document.buffer_views.get(v));
+                    let bytes = view.and_then(|view| view_bytes(view, buffers));
+                    let bytes = bytes.ok_or_else(|| missing("it is not in its buffer"))?;
+                    Ok(bytes.to_vec())
+                }
             }
-        }
+        })?;
+        // Where a better picture cannot be read, this one is in its place.
+        textures.failed.drain(failed);
+        Some(made)
     })
 }

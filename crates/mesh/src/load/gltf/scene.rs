@@ -1,12 +1,12 @@
 //! From a glTF document's nodes to triangles in world coordinates.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 use glam::{DMat4, DQuat, DVec3};
 
 use super::accessor::Numbers;
 use super::document::{
-    Document, Instances, Material as FileMaterial, Mesh as FileMesh, Node, Primitive,
+    Attributes, Document, Instances, Material as FileMaterial, Mesh as FileMesh, Node, Primitive,
 };
 use super::picture::{self, Places};
 use super::{Beside, Buffers, Fault, Place, Problem, broken};
@@ -28,12 +28,8 @@ pub(super) struct Reader<'d> {
     buffers: &'d Buffers<'d>,
     beside: &'d Beside<'d>,
     most: usize,
-    skipped_modes: u64,
-    morphed: u64,
-    skinned: u64,
-    without_uvs: u64,
-    incomplete: u64,
-    has_opacities: bool,
+    /// Counts of things that are not drawn.
+    left_out: BTreeMap<&'static str, usize>,
     textures: Textures,
     /// The material of primitives without one that have colours.
     white: Option<u32>,
@@ -54,12 +50,7 @@ impl<'d> Reader<'d> {
             most: TRIANGLES_A_BYTE
                 .saturating_mul(bytes)
                 .saturating_add(FREE_TRIANGLES),
-            skipped_modes: 0,
-            morphed: 0,
-            skinned: 0,
-            without_uvs: 0,
-            incomplete: 0,
-            has_opacities: false,
+            left_out: BTreeMap::new(),
             textures: Textures::default(),
             white: None,
         }
@@ -91,49 +82,27 @@ impl<'d> Reader<'d> {
             }
         }
         self.textures.tell(builder);
-        let count = |is_meant: fn(&FileMaterial) -> bool| {
-            let materials = self.document.materials.iter();
-            materials.filter(|material| is_meant(material)).count() as u64
-        };
-        if self.has_opacities {
-            builder.warn("opacities of vertices were passed over");
+        for material in &self.document.materials {
+            let emits = material.emits_light();
+            self.left_out(emits, "materials emit light, which is not drawn");
+            let transmits =
+                "materials transmit light (KHR_materials_*transmission), which is not drawn";
+            self.left_out(material.transmits_light(), transmits);
         }
-        for (count, what) in [
-            (
-                count(FileMaterial::emits_light),
-                "materials emit light, which is not drawn",
-            ),
-            (
-                count(FileMaterial::transmits_light),
-                "materials transmit light (KHR_materials_*transmission), which is not drawn",
-            ),
-            (
-                self.without_uvs,
-                "primitives have a texture, but no texture coordinates",
-            ),
-            (
-                (self.document.meshes.len() - meshes.len()) as u64,
-                "meshes are in no node that is shown",
-            ),
-            (
-                self.incomplete,
-                "primitives end within a triangle, which was passed over",
-            ),
-            (
-                self.skipped_modes,
-                "primitives of points or lines were passed over",
-            ),
-            (
-                self.morphed,
-                "primitives have morph targets, which are not applied",
-            ),
-            (self.skinned, "meshes have skins, which are not applied"),
-        ] {
-            if count > 0 {
-                builder.warn(format!("{count} {what}"));
-            }
+        for number in 0..self.document.meshes.len() {
+            let is_hidden = !meshes.contains(&number);
+            self.left_out(is_hidden, "meshes are in no node that is shown");
+        }
+        for (what, count) in &self.left_out {
+            builder.warn(format!("{count} {what}"));
         }
         Ok(())
+    }
+
+    fn left_out(&mut self, is_so: bool, what: &'static str) {
+        if is_so {
+            *self.left_out.entry(what).or_default() += 1;
+        }
     }
 
     fn shown(&mut self) -> Result<Vec<(usize, DMat4)>, Problem> {
@@ -164,10 +133,15 @@ impl<'d> Reader<'d> {
             }
             let placed = parent * transform(node);
             if let Some(mesh) = node.mesh {
-                self.skinned += u64::from(node.skin.is_some());
+                let has_skin = node.skin.is_some();
+                self.left_out(has_skin, "meshes have skins, which are not applied");
                 match &node.extensions.instances {
                     None => shown.push((mesh, placed)),
                     Some(instances) => {
+                        let mut names = instances.attributes.keys();
+                        let told =
+                            "nodes have colours of instances (_COLOR_0), which are not drawn";
+                        self.left_out(names.any(|name| name.starts_with("_COLOR")), told);
                         let room = self.most.saturating_sub(shown.len());
                         let instances = self.instances(instances, room)?;
                         shown.extend(instances.map(|instance| (mesh, placed * instance)));
@@ -185,16 +159,10 @@ impl<'d> Reader<'d> {
         instances: &Instances,
         most: usize,
     ) -> Result<impl Iterator<Item = DMat4> + use<'d>, Problem> {
-        let find = |name: &str| {
-            let accessor = instances.attributes.get(name).copied().flatten();
-            accessor.map(|a| self.numbers(a)).transpose()
-        };
+        let find = |name: &str| self.attribute(&instances.attributes, name);
         let [moves, turns, scales] = [find("TRANSLATION")?, find("ROTATION")?, find("SCALE")?];
-        let counts = [&moves, &turns, &scales]
-            .into_iter()
-            .flatten()
-            .map(|n| n.count);
-        let count = counts.max().unwrap_or(0);
+        let all = [&moves, &turns, &scales].into_iter().flatten();
+        let count = all.map(|numbers| numbers.count).max().unwrap_or(0);
         if count > most {
             return Err(too_many());
         }
@@ -202,10 +170,8 @@ impl<'d> Reader<'d> {
             let turn = turns.as_ref().map_or(DQuat::IDENTITY, |turns| {
                 DQuat::from_array([0, 1, 2, 3].map(|k| f64::from(turns.real(at, k))))
             });
-            let scale = scales
-                .as_ref()
-                .map_or(DVec3::ONE, |scales| scales.point(at));
-            let moved = moves.as_ref().map_or(DVec3::ZERO, |moves| moves.point(at));
+            let scale = scales.as_ref().map_or(DVec3::ONE, |of| of.point(at));
+            let moved = moves.as_ref().map_or(DVec3::ZERO, |of| of.point(at));
             placed(scale, turn, moved)
         }))
     }
@@ -244,17 +210,13 @@ impl<'d> Reader<'d> {
         if !(4..=6).contains(&mode) {
             return Ok(None);
         }
-        let Some(positions) = self.attribute(primitive, "POSITION")? else {
+        let Some(positions) = self.attribute(&primitive.attributes, "POSITION")? else {
             return Ok(None);
         };
         if !positions.has(2) {
             let number = primitive.attributes["POSITION"].unwrap_or_default();
-            return Err(broken(
-                "accessor",
-                number,
-                "positions as VEC3",
-                "fewer numbers",
-            ));
+            let expected = "positions as VEC3";
+            return Err(broken("accessor", number, expected, "fewer numbers"));
         }
         let indices = primitive.indices.map(|a| self.numbers(a)).transpose()?;
         let corners = indices.as_ref().map_or(positions.count, |i| i.count);
@@ -280,11 +242,11 @@ impl<'d> Reader<'d> {
             return Ok(None);
         };
         let transform = info.extensions.transform.as_ref();
-        let set = transform
-            .and_then(|t| t.tex_coord)
-            .unwrap_or(info.tex_coord);
-        let Some(uvs) = self.attribute(primitive, &format!("TEXCOORD_{set}"))? else {
-            self.without_uvs += 1;
+        let moved = transform.and_then(|t| t.tex_coord);
+        let set = moved.unwrap_or(info.tex_coord);
+        let Some(uvs) = self.attribute(&primitive.attributes, &format!("TEXCOORD_{set}"))? else {
+            let told = "primitives have a texture, but no texture coordinates";
+            self.left_out(true, told);
             return Ok(None);
         };
         let (buffers, beside) = (self.buffers, self.beside);
@@ -300,8 +262,12 @@ impl<'d> Reader<'d> {
         Numbers::find(self.document, self.buffers, accessor)
     }
 
-    fn attribute(&self, primitive: &Primitive, name: &str) -> Result<Option<Numbers<'d>>, Problem> {
-        let accessor = primitive.attributes.get(name).copied().flatten();
+    fn attribute(
+        &self,
+        attributes: &Attributes,
+        name: &str,
+    ) -> Result<Option<Numbers<'d>>, Problem> {
+        let accessor = attributes.get(name).copied().flatten();
         accessor.map(|a| self.numbers(a)).transpose()
     }
 
@@ -313,22 +279,28 @@ impl<'d> Reader<'d> {
         builder: &mut MeshBuilder,
     ) -> Result<(), Problem> {
         let Some((positions, indices, triangles)) = self.parts(primitive)? else {
-            self.skipped_modes += 1;
+            self.left_out(true, "primitives of points or lines were passed over");
             return Ok(());
         };
-        self.morphed += u64::from(!primitive.targets.is_empty());
+        let told = "primitives have morph targets, which are not applied";
+        self.left_out(!primitive.targets.is_empty(), told);
         let corners = indices.as_ref().map_or(positions.count, |i| i.count);
         let is_whole = primitive.mode.unwrap_or(4) != 4 || corners.is_multiple_of(3);
-        self.incomplete += u64::from(!is_whole);
-        let normals = self.attribute(primitive, "NORMAL")?;
-        let colors = self.attribute(primitive, "COLOR_0")?;
+        let told = "primitives end within a triangle, which was passed over";
+        self.left_out(!is_whole, told);
+        let normals = self.attribute(&primitive.attributes, "NORMAL")?;
+        let colors = self.attribute(&primitive.attributes, "COLOR_0")?;
         let blended = primitive
             .material
             .and_then(|m| self.document.materials.get(m));
         let blended = blended.filter(|&material| alpha_mode(material) != AlphaMode::Opaque);
         if let (Some(_), Some(colors)) = (blended, &colors) {
             let mut vertices = 0..colors.count.min(positions.count);
-            self.has_opacities |= colors.has(3) && vertices.any(|at| colors.real(at, 3) < 1.0);
+            let has_opacities = colors.has(3) && vertices.any(|at| colors.real(at, 3) < 1.0);
+            self.left_out(
+                has_opacities,
+                "primitives have opacities of vertices, which are not drawn",
+            );
         }
         let base = builder.positions() as u32;
         for at in 0..positions.count {
@@ -438,7 +410,8 @@ fn understood(material: &FileMaterial) -> Material {
     let [r, g, b, a] = factor.unwrap_or([1.0; 4]);
     let alpha = match material.alpha_mode.as_deref() {
         Some("BLEND") => a,
-        // Written so that an alpha that is no number is opaque.
+        // That of a texture's texels is compared there. Written so that an alpha that is no number is opaque.
+        Some("MASK") if material.base().base_color_texture.is_some() => 1.0,
         Some("MASK") if a < material.alpha_cutoff.unwrap_or(0.5) => 0.0,
         _ => 1.0,
     };
