@@ -1,5 +1,6 @@
-//! Equal triangles, looked at once: those with corners at the same points of the lattice and the same normals there and
-//! places in one texture, in the same order. The first counts with the opacities of all added up and their colours, averaged by opacity.
+//! Equal triangles, looked at once: those with corners at the same points of the lattice, and the same normals and places
+//! in one texture there, in the same order. The first counts with the opacities of all added up and their colours,
+//! averaged by opacity.
 
 use std::collections::HashMap;
 
