@@ -8,6 +8,8 @@
 //! is the nearest of Accelergy's primitive classes, or else the operation's name. An access changes address and data.
 //! Shifts by wires are no components. Leakage and the clock are neither written nor read.
 
+mod yaml;
+
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -173,8 +175,9 @@ impl EnergyTable {
     /// When the text is no ERT of version 0.3 or later, or an energy is not a number from 0.
     pub fn parse(file: &str, text: &str) -> Result<Self, CostError> {
         let wrong = |why: String| CostError::new(format!("{file} is no Accelergy ERT: {why}"));
-        let parsed: File =
-            serde_saphyr::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        let document = yaml::document(text).map_err(wrong)?;
+        let parsed = serde_json::from_value(document);
+        let parsed: File = parsed.map_err(|error| wrong(error.to_string()))?;
         for table in &parsed.ert.tables {
             for Action { name, energy, .. } in &table.actions {
                 if !(energy.is_finite() && *energy >= 0.0) {

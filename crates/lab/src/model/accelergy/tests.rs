@@ -37,7 +37,7 @@ const TABLE: &str = include_str!("table.yaml");
 fn components_and_counts_by_hand() {
     let text = counts(&[("light", &frame())], Technology::default());
     assert_eq!(text, COUNTS);
-    serde_saphyr::from_str::<Value>(&text).unwrap();
+    yaml::document(&text).unwrap();
 }
 
 fn totals(cost: &FrameCost, by: &dyn Estimator) -> Result<[f64; 3], CostError> {
@@ -90,6 +90,9 @@ fn wrong_tables_are_refused_with_file_and_key() {
             "name: fill",
             "mine.yaml: ERT.tables has no action `write` of `light.stack_voxel_64`",
         ),
+        ("energy: 8", "energy: *mine", "it has aliases"),
+        ("energy: 8", "energy: [", "mine.yaml is no Accelergy ERT"),
+        ("energy: 8", &"[".repeat(99), "nested too deeply"),
     ] {
         let text = TABLE.replacen(from, to, 1);
         let table = EnergyTable::parse("mine.yaml", &text);
