@@ -70,6 +70,16 @@ impl<I: Isa> InUnits<I> {
         }
         values
     }
+
+    /// The largest value about any part in a square of a size.
+    #[inline(always)]
+    pub(super) fn reach(&self, isa: I, size: [I::F32x4; 2]) -> f32 {
+        let most = [0, 1, 2].map(|i| {
+            let shift = self.next[i].abs().add(self.last[i].abs());
+            shift.fma(isa.splat(1.5), self.moment[i].abs())
+        });
+        greatest(most[1].fma(size[0], most[2].fma(size[1], most[0])))
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
