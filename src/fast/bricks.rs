@@ -10,7 +10,7 @@
 use super::band::{Band, Brick, BrickBlocks, Hit, Record, voxel_at};
 use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::Isa;
-use super::lines::{Line, Lines, OFFSETS};
+use super::lines::{BLOCKS, Line, Lines, OFFSETS};
 use super::parts::Part;
 use super::projection::Projection;
 use super::strips::Row;
@@ -69,19 +69,23 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
     let [any, all] = band.candidates.look_up(isa, tables, &cells, exist, open);
     let pair = u32::from(octant) * 9;
-    let (mut found, mut left, mut drawn) = (any, 0, 0);
+    // Samples with parts to try, those with more blocks, and those that only have blocks.
+    let (mut found, mut more, mut left, mut drawn) = (any, 0, 0, 0);
     if DEEP && any != 0 {
         prepare(band, brick, all, octant);
-        [found, left] = next_blocks(band, &lines, tables, any, true);
+        [found, more] = next_blocks(band, &lines, tables, any, true);
+        left = more & !found;
     }
     let attempts = if band.blends { 0 } else { ATTEMPTS };
     for _ in 0..attempts {
-        let [met, again, beyond] = meet_first::<I, DEEP>(band, &lines, found, pair);
+        let [met, none] = meet_first::<I, DEEP>(band, &lines, found, pair);
         drawn |= met;
-        found = again;
+        found &= !(met | none);
         if DEEP {
-            let [begun, rest] = next_blocks(band, &lines, tables, left | beyond, false);
-            (found, left) = (again | begun, rest);
+            let wanted = left | none & more & !met;
+            let [begun, others] = next_blocks(band, &lines, tables, wanted, false);
+            more = more & !wanted | others;
+            (found, left) = (found | begun, others & !begun);
         }
     }
     for bit in bits(left | found) {
@@ -92,7 +96,7 @@ fn draw_samples<I: Isa, const DEEP: bool>(
         if DEEP {
             block = u64::from(band.hits[bit].block & 63);
             blocks = band.brick_blocks.others[bit];
-            line = sample.about(isa, &OFFSETS[block as usize]);
+            line = sample.about(isa, &BLOCKS[block as usize]);
         }
         'sample: loop {
             while parts != 0 {
@@ -129,7 +133,7 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                 break;
             }
             [block, parts, blocks] = band.brick_blocks.next(isa, tables, &cells, blocks);
-            line = sample.about(isa, &OFFSETS[block as usize]);
+            line = sample.about(isa, &BLOCKS[block as usize]);
         }
     }
     if !band.blends {
@@ -139,7 +143,7 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     drawn
 }
 
-/// Looks up the parts of a next block by sample. Returns the samples that have any, and others that have more blocks.
+/// Looks up the parts of a next block by sample. Returns the samples that have any, and those that have more blocks.
 #[inline(always)]
 fn next_blocks<I: Isa>(
     band: &mut Band<'_, I>,
@@ -164,39 +168,36 @@ fn next_blocks<I: Isa>(
         found |= u64::from(parts != 0) << bit;
         others |= u64::from(blocks != 0) << bit;
     }
-    [found, others & !found]
+    [found, others]
 }
 
-/// Splits samples: those whose lines meet the first part that they may meet, those that may meet others, and those that
-/// may only meet other blocks. Without branches, because the outcome is unpredictable.
+/// Of samples, those whose lines meet the first part that they may meet, and those that have no other. Without branches,
+/// because the outcome is unpredictable.
 #[inline(always)]
 fn meet_first<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     lines: &Lines<I>,
     found: u64,
     pair: u32,
-) -> [u64; 3] {
+) -> [u64; 2] {
     let isa = band.isa;
-    let (mut drawn, mut again, mut beyond) = (0, 0, 0);
+    let (mut met, mut none) = (0, 0);
     for bit in bits(found) {
         let mut line = lines.line(isa, &SAMPLES[bit]);
-        let mut blocks = 0;
         if DEEP {
             let block = usize::from(band.hits[bit].block & 63);
-            line = line.about(isa, &OFFSETS[block]);
-            blocks = band.brick_blocks.others[bit];
+            line = line.about(isa, &BLOCKS[block]);
         }
         let parts = band.candidates.0[bit];
         let part = parts.trailing_zeros() as usize & 63;
         let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
         band.hits[bit].part = (part as u32 ^ pair) as u8;
-        drawn |= u64::from(is_met) << bit;
+        met |= u64::from(is_met) << bit;
         let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
         band.candidates.0[bit] = parts;
-        again |= u64::from((parts != 0) & !is_met) << bit;
-        beyond |= u64::from((parts == 0) & (blocks != 0) & !is_met) << bit;
+        none |= u64::from(parts == 0) << bit;
     }
-    [drawn, again, beyond]
+    [met, none]
 }
 
 impl BrickBlocks {
@@ -213,7 +214,7 @@ impl BrickBlocks {
         for found in &mut two {
             let block = blocks.trailing_zeros() as usize;
             blocks &= blocks.wrapping_sub(1);
-            let [x, y, z] = cells.block_cells(isa, &OFFSETS[block]);
+            let [x, y, z] = cells.block_cells(isa, &BLOCKS[block]);
             let parts = tables[0][x] & tables[1][y] & tables[2][z] & self.exist[block];
             *found = [block as u64 & 63, parts, blocks];
         }

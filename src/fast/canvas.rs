@@ -201,6 +201,23 @@ impl Pixels<'_> {
         }
     }
 
+    /// Writes words at samples of a square; `step` from a row's words to the next row's.
+    #[inline(always)]
+    pub(super) fn write<I: Isa>(
+        &mut self,
+        isa: I,
+        [x, y]: [i32; 2],
+        samples: u64,
+        words: &[u32],
+        step: usize,
+    ) {
+        let (first, width) = (self.at(x, y), self.width);
+        match self.shown.get_mut(first..first + 7 * width + 8) {
+            Some(rows) => isa.store_masked(rows, width, samples, words, step),
+            None => Scalar.store_masked(&mut self.shown[first..], width, samples, words, step),
+        }
+    }
+
     #[inline(always)]
     pub(super) fn show<I: Isa>(
         &mut self,
@@ -210,14 +227,9 @@ impl Pixels<'_> {
         node: u32,
         voxel: [i32; 4],
     ) {
-        let first = self.at(x, y);
-        let word = self.word(node);
-        let end = first + 7 * self.width + 8;
-        match self.shown.get_mut(first..end) {
-            Some(rows) => isa.store_masked(rows, self.width, samples, word),
-            None => Scalar.store_masked(&mut self.shown[first..], self.width, samples, word),
-        }
+        self.write(isa, [x, y], samples, &[self.word(node); 8], 0);
         if self.wants_voxels() {
+            let first = self.at(x, y);
             for bit in bits(samples) {
                 self.voxel[first + (bit >> 3) * self.width + (bit & 7)] = voxel;
             }

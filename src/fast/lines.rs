@@ -70,6 +70,16 @@ impl<I: Isa> InUnits<I> {
         }
         values
     }
+
+    /// The largest value about any part in a square of a size.
+    #[inline(always)]
+    pub(super) fn reach(&self, isa: I, size: [I::F32x4; 2]) -> f32 {
+        let most = [0, 1, 2].map(|i| {
+            let shift = self.next[i].abs().add(self.last[i].abs());
+            shift.fma(isa.splat(1.5), self.moment[i].abs())
+        });
+        greatest(most[1].fma(size[0], most[2].fma(size[1], most[0])))
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -77,7 +87,7 @@ pub(super) struct Line<I: Isa> {
     next: I::F32x4,
     last: I::F32x4,
     moment: I::F32x4,
-    half: I::F32x4,
+    width: I::F32x4,
 }
 
 #[inline(always)]
@@ -209,7 +219,7 @@ impl<I: Isa> Lines<I> {
             next,
             last,
             moment: at(&self.moment),
-            half: next.add(last).mul(isa.splat(0.5)),
+            width: next.add(last),
         }
     }
 
@@ -217,10 +227,9 @@ impl<I: Isa> Lines<I> {
     #[inline(always)]
     pub(super) fn line_in_cells(&self, isa: I, line: &Line<I>) -> Line<I> {
         let unit = self.inverse.mul(isa.splat(CELLS_PER_WIDTH));
-        let unit_of_blocks = self.inverse.mul(isa.splat(4.0 * CELLS_PER_WIDTH));
         Line {
-            next: line.next.mul(unit_of_blocks),
-            last: line.last.mul(unit_of_blocks),
+            next: line.next.mul(unit),
+            last: line.last.mul(unit),
             moment: line.moment.fma(unit, isa.splat(MIDDLE)),
             ..*line
         }
@@ -230,7 +239,7 @@ impl<I: Isa> Lines<I> {
     #[inline(always)]
     pub(super) fn are_inside(&self, isa: I, line: &Line<I>, offset: &Offset) -> [bool; 2] {
         let from_centre = line.moment.sub(line.shift(isa, offset));
-        let outside = from_centre.abs().sub(line.half);
+        let outside = line.width.fnma(isa.splat(0.5), from_centre.abs());
         [
             outside.add(self.doubt).signs() & 7 == 7,
             outside.sub(self.doubt).signs() & 7 == 7,
@@ -247,9 +256,8 @@ impl<I: Isa> Line<I> {
 
     #[inline(always)]
     pub(super) fn about(&self, isa: I, block: &Offset) -> Self {
-        let shift = self.shift(isa, block);
         Self {
-            moment: self.moment.sub(shift.mul(isa.splat(4.0))),
+            moment: self.moment.sub(self.shift(isa, block)),
             ..*self
         }
     }
@@ -271,8 +279,13 @@ pub(super) struct Offset {
     pub(super) last: [f32; 4],
 }
 
-/// The last is of no part.
-pub(super) static OFFSETS: [Offset; 65] = {
+/// Of parts. The last is of none.
+pub(super) static OFFSETS: [Offset; 65] = offsets(1.0);
+
+/// Of blocks, which are four parts wide.
+pub(super) static BLOCKS: [Offset; 65] = offsets(4.0);
+
+const fn offsets(side: f32) -> [Offset; 65] {
     let mut table = [Offset {
         next: [0.0; 4],
         last: [0.0; 4],
@@ -281,14 +294,14 @@ pub(super) static OFFSETS: [Offset; 65] = {
     while part < 64 {
         let mut j = 0;
         while j < 3 {
-            table[part].next[j] = along(part, (j + 1) % 3) as f32 - 1.5;
-            table[part].last[j] = along(part, (j + 2) % 3) as f32 - 1.5;
+            table[part].next[j] = (along(part, (j + 1) % 3) as f32 - 1.5) * side;
+            table[part].last[j] = (along(part, (j + 2) % 3) as f32 - 1.5) * side;
             j += 1;
         }
         part += 1;
     }
     table
-};
+}
 
 #[cfg(test)]
 pub(super) mod tests {
@@ -432,7 +445,7 @@ pub(super) mod tests {
         let (square, centre) = (samples.square, projection.centre);
         let sign = |k: usize| 1.0 - 2.0 * f32::from(samples.octant >> (2 - k) & 1);
         let line = lines.line(Scalar, &[i as f32, j as f32]);
-        let about = line.about(Scalar, block);
+        let about = line.about(Scalar, &BLOCKS[(8 * j + i) as usize]);
         let from_centre = about.moment.sub(about.shift(Scalar, part));
         let sides = [
             [square.left, square.right, i],
@@ -477,7 +490,7 @@ pub(super) mod tests {
                 (&signed, "vl", line.last[axis]),
                 (&signed, "m", line.moment[axis]),
                 (&signed, "f", from_centre[axis]),
-                (&signed, "half", line.half[axis]),
+                (&signed, "sum", line.width[axis]),
                 (&sizes, "spread", samples.directions.spread[l]),
                 (&sizes, "doubt", lines.doubt[axis]),
             ] {

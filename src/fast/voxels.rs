@@ -9,11 +9,16 @@ use super::lines::{InUnits, Lines, OFFSETS, Offset};
 use super::projection::Projection;
 use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, Strips};
 use super::window::{Window, bits};
+use crate::graph::prefetch;
 
 const UNIT: f32 = 2048.0;
 /// Rounding in units: of the first value and of seven steps of a column and of a row, half each, and a unit.
 const ROUNDING: f32 = 8.5;
 const LARGEST: f32 = 30_000.0;
+
+/// What a square's samples show.
+#[repr(align(32))]
+struct Words([u32; 64]);
 
 #[inline(always)]
 pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Window) {
@@ -22,6 +27,10 @@ pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Wi
     let across = if is_single { 1.0 } else { 4.0 };
     let projection = Projection::new(band.isa, band.constants, level, brick.record.centre, across);
     band.counters.bricks += u64::from(!is_single);
+    // Colours lie all over the memory, 21 to a line of it.
+    if let Some(first) = brick.parts.first_node(band.graph) {
+        (0..4).for_each(|line| prefetch(band.pixels.color, first as usize + 21 * line));
+    }
     each_square(
         band,
         window,
@@ -59,17 +68,21 @@ fn draw_samples<I: Isa>(
     let units = lines.in_units(isa, UNIT);
     let pair = u32::from(octant) * 9;
     let corner = [square.left, square.top];
+    let limits = (units.reach(isa, size) <= LARGEST).then_some(limits);
     let offset_of = |number: usize| &OFFSETS[if is_single { 64 } else { number & 63 }];
+    // Several voxels are put together before they are written to the picture, whose rows lie far apart.
+    let is_joined = !is_single && !band.blends && !band.pixels.wants_voxels();
+    let mut words = Words([0; 64]);
     let (mut left, mut drawn) = (open, 0u64);
     let mut number = wanted.trailing_zeros() as usize;
-    let mut masks = square_masks(isa, &units, offset_of(number), size, limits);
+    let mut masks = square_masks(isa, &units, offset_of(number), limits);
     while wanted != 0 && left != 0 {
         let (offset, part_number, [held, certain]) =
             (offset_of(number), number as u32 ^ pair, masks);
         wanted &= wanted - 1;
         // One voxel ahead, as whether a voxel is held is unpredictable.
         number = wanted.trailing_zeros() as usize;
-        masks = square_masks(isa, &units, offset_of(number), size, limits);
+        masks = square_masks(isa, &units, offset_of(number), limits);
         let held = held & left;
         if held == 0 {
             continue;
@@ -89,36 +102,37 @@ fn draw_samples<I: Isa>(
         }
         if covered != 0 {
             band.counters.solids += 1;
-            let voxel = if band.pixels.wants_voxels() || band.constants.opacity_eye.is_some() {
-                path.voxel(band, brick)
+            let full = if is_joined {
+                let word = [band.pixels.word(part.node); 8];
+                isa.store_masked(&mut words.0, 8, covered, &word, 0);
+                covered
             } else {
-                [0; 4]
+                let voxel = path.voxel(band, brick);
+                band.show(corner, covered, part.node, voxel)
             };
-            let full = band.show(corner, covered, part.node, voxel);
             left &= !full;
             drawn |= full;
         }
+    }
+    if is_joined && drawn != 0 {
+        band.pixels.write(isa, corner, drawn, &words.0, 8);
     }
     band.counters.samples_drawn += u64::from(drawn.count_ones());
     drawn
 }
 
-/// The samples of a square, `size` large, that may be in all three strips of a voxel, and those that certainly are.
+/// The samples of a square that may be in all three strips of a voxel, and those that certainly are.
 #[inline(always)]
 fn square_masks<I: Isa>(
     isa: I,
     units: &InUnits<I>,
     offset: &Offset,
-    size: [I::F32x4; 2],
-    [most, sure]: [i16; 2],
+    limits: Option<[i16; 2]>,
 ) -> [u64; 2] {
-    let values = &units.about(isa, offset);
-    let [first, step_x, step_y] = values;
-    let reach = step_y.abs().fma(size[1], first.abs());
-    let reach = step_x.abs().fma(size[0], reach);
-    if isa.splat(LARGEST).sub(reach).signs() & 7 != 0 {
+    let Some([most, sure]) = limits else {
         return [u64::MAX, 0];
-    }
+    };
+    let values = &units.about(isa, offset);
     let mut distances = Distances([I::I16x16::splat(isa, 0); 4]);
     distances.add_function::<0>(isa, values);
     distances.add_function::<1>(isa, values);
@@ -126,7 +140,8 @@ fn square_masks<I: Isa>(
     [distances.below(isa, most), distances.below(isa, sure)]
 }
 
-/// The largest distance of the three functions from 0, by sample, two rows per vector. No meaning beyond 16 bits.
+/// The largest distance of the three functions from 0, by sample: rows 0 and 2, 1 and 3, 4 and 6, and 5 and 7. No
+/// meaning beyond 16 bits.
 struct Distances<I: Isa>([I::I16x16; 4]);
 
 impl<I: Isa> Distances<I> {
@@ -138,11 +153,12 @@ impl<I: Isa> Distances<I> {
         let first = isa.broadcast_rounded::<FUNCTION>(first);
         let step_x = isa.broadcast_rounded::<FUNCTION>(step_x);
         let step_y = isa.broadcast_rounded::<FUNCTION>(step_y);
-        let mut at = first.add(columns.mul(step_x)).add(rows.mul(step_y));
         let two_rows = step_y.add(step_y);
-        for worst in &mut self.0 {
+        let three_rows = two_rows.add(step_y);
+        let mut at = first.add(columns.mul(step_x)).add(rows.mul(two_rows));
+        for (worst, down) in self.0.iter_mut().zip([step_y, three_rows, step_y, step_y]) {
             *worst = worst.max_unsigned(at.abs());
-            at = at.add(two_rows);
+            at = at.add(down);
         }
     }
 

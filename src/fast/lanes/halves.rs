@@ -88,10 +88,7 @@ impl<V: Shorts<8>> Shorts<16> for Pair<V> {
     }
     #[inline(always)]
     fn below(self, next: Self, limit: Self) -> u32 {
-        // Each has lanes of this vector in its low byte.
-        let low = self.0.below(next.0, limit.0);
-        let high = self.1.below(next.1, limit.1);
-        low & 0xff | (high & 0xff) << 8 | (low & 0xff00) << 8 | (high & 0xff00) << 16
+        self.0.below(next.0, limit.0) | self.1.below(next.1, limit.1) << 16
     }
 }
 

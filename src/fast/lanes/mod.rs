@@ -117,7 +117,7 @@ pub(super) trait Shorts<const N: usize>: Lanes<N, Lane = i16> {
     fn abs(self) -> Self;
     /// The greater, of lanes taken as `u16`.
     fn max_unsigned(self, other: Self) -> Self;
-    /// The lanes of this vector, then of the next, that are below a limit, one bit each.
+    /// The lanes that are below a limit, one bit each: eight of this vector, eight of the next, and again.
     fn below(self, next: Self, limit: Self) -> u32;
 }
 
@@ -172,14 +172,16 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     fn turned(self, parts: u64, octant: u8) -> u64 {
         turned_parts(parts, octant)
     }
-    /// Writes a value to 8 x 8 entries by mask, eight bits per row; rows begin `width` apart. Panics unless all exist.
+    /// Copies values to 8 x 8 entries by mask, eight bits per row; rows of entries begin `width` apart, of values `step`.
+    /// Panics unless all exist.
     #[inline(always)]
-    fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
+    fn store_masked(self, to: &mut [u32], width: usize, mask: u64, from: &[u32], step: usize) {
         let mut left = mask;
         while left != 0 {
             let bit = left.trailing_zeros() as usize;
             left &= left - 1;
-            entries[(bit >> 3) * width + (bit & 7)] = value;
+            let (row, column) = (bit >> 3, bit & 7);
+            to[row * width + column] = from[row * step + column];
         }
     }
 }

@@ -237,21 +237,21 @@ impl Isa for Vector {
         Pair(all, all)
     }
     #[inline(always)]
-    fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
+    fn store_masked(self, to: &mut [u32], width: usize, mask: u64, from: &[u32], step: usize) {
         let bits = [1, 2, 4, 8, 16, 32, 64, 128];
-        assert!(width.saturating_mul(7).saturating_add(8) <= entries.len());
+        assert!(width.saturating_mul(7).saturating_add(8) <= to.len());
         for i in 0..8 {
-            let (fours, _) = entries[i * width..][..8].as_chunks_mut::<4>();
-            for (four, bits) in fours.iter_mut().zip(bits.as_chunks::<4>().0) {
+            let (fours, _) = to[i * width..][..8].as_chunks_mut::<4>();
+            let (values, _) = from[i * step..][..8].as_chunks::<4>();
+            let of_columns = values.iter().zip(bits.as_chunks::<4>().0);
+            for (four, (value, bits)) in fours.iter_mut().zip(of_columns) {
                 // SAFETY: all 64-bit Arm processors have these instructions. Loads and the store are of the arrays' lanes.
                 unsafe {
                     let mask = vdupq_n_u32((mask >> (8 * i)) as u32);
                     let mask = vtstq_u32(mask, vld1q_u32(bits.as_ptr()));
+                    let value = vld1q_u32(value.as_ptr());
                     let before = vld1q_u32(four.as_ptr());
-                    vst1q_u32(
-                        four.as_mut_ptr(),
-                        vbslq_u32(mask, vdupq_n_u32(value), before),
-                    );
+                    vst1q_u32(four.as_mut_ptr(), vbslq_u32(mask, value, before));
                 }
             }
         }

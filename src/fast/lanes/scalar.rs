@@ -129,8 +129,9 @@ impl<const N: usize> Shorts<N> for [i16; N] {
     }
     #[inline(always)]
     fn below(self, next: Self, limit: Self) -> u32 {
-        let [low, high] = [self, next].map(|lanes| bits::<N>(|i| lanes[i] < limit[i]));
-        low | high << N
+        let [own, next] = [self, next].map(|lanes| bits::<N>(|i| lanes[i] < limit[i]));
+        let eight = |i: usize| (own >> i & 0xff | (next >> i & 0xff) << 8) << (2 * i);
+        (0..N).step_by(8).map(eight).sum()
     }
 }
 

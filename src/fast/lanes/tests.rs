@@ -100,12 +100,9 @@ fn results<I: Isa>(isa: I, seed: u64) -> String {
         isa.expand(seed.wrapping_mul(0x0123_4567_89ab_cdef), seed as u8)
     );
     let mut entries = [7; 96];
-    isa.store_masked(
-        &mut entries,
-        11,
-        seed.wrapping_mul(0x9e37_79b9_7f4a_7c15),
-        9,
-    );
+    let mask = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let values = std::array::from_fn::<_, 71, _>(|i| i as u32);
+    isa.store_masked(&mut entries, 11, mask, &values, 9);
     text + &format!("{entries:?}")
 }
 

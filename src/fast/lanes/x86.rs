@@ -156,9 +156,8 @@ impl Shorts<16> for Shorts16 {
         intrinsics!({
             let own = _mm256_cmpgt_epi16(limit.0, self.0);
             let next = _mm256_cmpgt_epi16(limit.0, next.0);
-            // Packing works by halves: their quarters 0 and 2, then 1 and 3.
-            let both = _mm256_packs_epi16(own, next);
-            _mm256_movemask_epi8(_mm256_permute4x64_epi64::<0b11_01_10_00>(both)) as u32
+            // Packing works by halves.
+            _mm256_movemask_epi8(_mm256_packs_epi16(own, next)) as u32
         })
     }
 }
@@ -266,19 +265,23 @@ impl Isa for Vector {
         }
     }
     #[inline(always)]
-    fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
-        assert!(width.saturating_mul(7).saturating_add(8) <= entries.len());
-        let first = entries.as_mut_ptr();
+    fn store_masked(self, to: &mut [u32], width: usize, mask: u64, from: &[u32], step: usize) {
+        assert!(width.saturating_mul(7).saturating_add(8) <= to.len());
+        assert!(step.saturating_mul(7).saturating_add(8) <= from.len());
+        let first = to.as_mut_ptr();
         let row = |i: usize| first.wrapping_add(i * width).cast::<__m256i>();
-        // SAFETY: as above. The eight entries of each of eight rows exist, as was checked.
+        let values = |i: usize| from.as_ptr().wrapping_add(i * step).cast();
+        // SAFETY: as above. The eight entries and values of each of eight rows exist, as was checked.
         unsafe {
-            let value = _mm256_set1_epi32(value as i32);
-            let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let halves = [mask, mask >> 32].map(|half| _mm256_set1_epi32(half as i32));
+            let columns = _mm256_setr_epi32(31, 30, 29, 28, 27, 26, 25, 24);
             // Loads first: rows are often 4096 bytes apart, which processors take for the same place for a while.
             let before = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| _mm256_loadu_si256(row(i)));
             for (i, before) in before.into_iter().enumerate() {
-                let mask = _mm256_set1_epi32((mask >> (8 * i)) as i32);
-                let mask = _mm256_cmpeq_epi32(_mm256_and_si256(mask, bits), bits);
+                let value = _mm256_loadu_si256(values(i));
+                // Each column's bit becomes its lane's sign, and that all of the lane.
+                let places = _mm256_sub_epi32(columns, _mm256_set1_epi32(8 * (i as i32 & 3)));
+                let mask = _mm256_srai_epi32::<31>(_mm256_sllv_epi32(halves[i / 4], places));
                 // Masked stores are slow on AMD.
                 _mm256_storeu_si256(row(i), _mm256_blendv_epi8(before, value, mask));
             }
