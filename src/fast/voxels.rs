@@ -16,7 +16,7 @@ const UNIT: f32 = 2048.0;
 const ROUNDING: f32 = 8.5;
 const LARGEST: f32 = 30_000.0;
 
-/// What a square's samples show.
+/// Words of a square's samples.
 #[repr(align(32))]
 struct Words([u32; 64]);
 
@@ -27,7 +27,7 @@ pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Wi
     let across = if is_single { 1.0 } else { 4.0 };
     let projection = Projection::new(band.isa, band.constants, level, brick.record.centre, across);
     band.counters.bricks += u64::from(!is_single);
-    // Colours lie all over the memory, 21 to a line of it.
+    // A line of the cache holds 21 colours.
     if let Some(first) = brick.parts.first_node(band.graph) {
         (0..4).for_each(|line| prefetch(band.pixels.color, first as usize + 21 * line));
     }

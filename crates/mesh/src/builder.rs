@@ -76,6 +76,10 @@ impl MeshBuilder {
         self.mesh.materials[material as usize].texture = Some(texture);
     }
 
+    pub(crate) fn set_opaque(&mut self, material: u32) {
+        self.mesh.materials[material as usize].alpha = 1.0;
+    }
+
     /// Adds a position and returns its number.
     pub fn position<T: Into<f64>>(&mut self, position: [T; 3]) -> u32 {
         let number = self.mesh.positions.len();

@@ -103,6 +103,7 @@ fn results<I: Isa>(isa: I, seed: u64) -> String {
     let mask = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let values = std::array::from_fn::<_, 71, _>(|i| i as u32);
     isa.store_masked(&mut entries, 11, mask, &values, 9);
+    isa.store_masked(&mut entries, 11, mask.rotate_left(7), &[9; 8], 0);
     text + &format!("{entries:?}")
 }
 

@@ -111,13 +111,18 @@ impl Made {
             }
             Ok(())
         };
+        let mut refused = Vec::new();
         for choice in choices {
             match add(choice).map_err(|error: CliError| error.at(name)) {
-                Err(error) if error.kind == Kind::Input => {
-                    console.note(format!("{error}; a method is left out"));
-                }
+                Err(error) if error.kind == Kind::Input => refused.push(error),
                 added => added?,
             }
+        }
+        if refused.len() == choices.len() {
+            return Err(refused.remove(0));
+        }
+        for error in refused {
+            console.note(format!("{error}; a method is left out"));
         }
         made.mesh = Some(mesh);
         Ok(made)

@@ -174,13 +174,17 @@ impl EnergyTable {
     /// # Errors
     /// When the text is no ERT of version 0.3 or later, or an energy is not a number from 0.
     pub fn parse(file: &str, text: &str) -> Result<Self, CostError> {
-        let wrong = |why: String| CostError::new(format!("{file} is no Accelergy ERT: {why}"));
+        // A reason may repeat a long text.
+        let wrong = |why: String| {
+            let why: String = why.chars().take(200).collect();
+            CostError::new(format!("{file} is no Accelergy ERT: {why}"))
+        };
         let document = yaml::document(text).map_err(wrong)?;
         let parsed = serde_json::from_value(document);
         let parsed: File = parsed.map_err(|error| wrong(error.to_string()))?;
         for table in &parsed.ert.tables {
             for Action { name, energy, .. } in &table.actions {
-                if !(energy.is_finite() && *energy >= 0.0) {
+                if *energy < 0.0 {
                     let key = format!("`{name}` of `{}`: energy is {energy}", table.name);
                     return Err(wrong(format!("{key}; it must be at least 0")));
                 }

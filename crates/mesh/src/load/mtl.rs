@@ -78,8 +78,8 @@ pub(super) fn read(bytes: &[u8], colors: ColorSpace) -> Library {
                 true
             }
             ("tf", Some(last)) => {
-                let first = numbers.next();
-                last.is_filter = numbers.take(2).any(|number| Some(number) != first);
+                let colors: Vec<f32> = numbers.flatten().take(3).collect();
+                last.is_filter = colors.iter().any(|&of| of != colors[0]);
                 true
             }
             ("kd", Some(last)) => {

@@ -54,9 +54,9 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Proble
     // Not as text in whole, which might be a copy.
     let mut lines = bytes.trim_ascii_start().split(|&byte| byte == b'\n');
     lines.next();
-    // The names of solids are not read.
+    // The names of solids are not read, nor are comments.
     let lines = lines.map(|line| match words(line).next() {
-        Some(word) if is(word, "solid") || is(word, "endsolid") => word,
+        Some(word) if is(word, "solid") || is(word, "endsolid") || word[0] == b'#' => word,
         _ => line,
     });
     let mut words = lines.flat_map(words);

@@ -119,7 +119,7 @@ pub(super) struct Textures {
     /// By their parts.
     made: HashMap<String, Option<Arc<Texture>>>,
     bytes: u64,
-    pub(super) failed: Vec<String>,
+    failed: Vec<String>,
 }
 
 impl Textures {
@@ -164,7 +164,7 @@ impl Textures {
             Ok((_, false)) => None,
             Ok(_) => Some("is cut short: its last part may be grey".to_owned()),
             Err(reason) => Some(format!(
-                "cannot be read ({reason}); what has it keeps its plain colour"
+                "cannot be read ({reason}); what has no other picture keeps its plain colour"
             )),
         };
         let told = told.map(|told| format!("the texture {name} {told}"));

@@ -206,7 +206,7 @@ impl Buffer<'_> {
                                 continue;
                             }
                         }
-                        // So does what is opaque of it.
+                        // The opaque part of a clear triangle lies on an opaque one, too.
                         let known = self.triangle[at + sample] as usize;
                         if order == Ordering::Equal && !surface.is_opaque(known) {
                             continue;

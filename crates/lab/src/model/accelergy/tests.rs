@@ -72,6 +72,7 @@ fn our_own_prices_come_back_unchanged() {
 
 #[test]
 fn wrong_tables_are_refused_with_file_and_key() {
+    let deep = format!("energy: {}{}", "[".repeat(99), "]".repeat(99));
     for (from, to, expected) in [
         ("ERT:", "ART:", "mine.yaml is no Accelergy ERT"),
         ("energy: 8", "energy: dear", "mine.yaml is no Accelergy ERT"),
@@ -90,9 +91,28 @@ fn wrong_tables_are_refused_with_file_and_key() {
             "name: fill",
             "mine.yaml: ERT.tables has no action `write` of `light.stack_voxel_64`",
         ),
-        ("energy: 8", "energy: *mine", "it has aliases"),
+        (
+            "energy: 8",
+            "energy: &a 8\n      more: *a",
+            "it has aliases",
+        ),
+        (
+            "energy: 8",
+            "energy: 8\n      energy: 1",
+            "the key energy comes twice",
+        ),
+        (
+            "energy: 1000",
+            "energy: 1000\n---\nERT:",
+            "several documents",
+        ),
+        (
+            "energy: 1000",
+            "energy: 1000\n...\nmore: [",
+            "no Accelergy ERT",
+        ),
         ("energy: 8", "energy: [", "mine.yaml is no Accelergy ERT"),
-        ("energy: 8", &"[".repeat(99), "nested too deeply"),
+        ("energy: 8", &*deep, "nested too deeply"),
     ] {
         let text = TABLE.replacen(from, to, 1);
         let table = EnergyTable::parse("mine.yaml", &text);

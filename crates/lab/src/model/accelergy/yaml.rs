@@ -3,11 +3,18 @@
 use saphyr_parser::{Event, Parser, ScalarStyle, ScanError, Span};
 use serde_json::{Number, Value};
 
-/// Levels of maps and lists. A table of Accelergy has seven.
+/// Levels of maps and lists, and three more: the file, its document and a text. A table of Accelergy has seven.
 const MOST_LEVELS: u32 = 20;
 
 pub(super) fn document(text: &str) -> Result<Value, String> {
-    let document = value(&mut Parser::new_from_str(text), MOST_LEVELS)?;
+    let mut events = Parser::new_from_str(text);
+    let document = value(&mut events, MOST_LEVELS)?;
+    // Of the document's end and the file's, neither is a value.
+    for _ in 0..2 {
+        if value(&mut events, MOST_LEVELS)?.is_some() {
+            return Err("it has several documents".to_owned());
+        }
+    }
     document.ok_or_else(|| "it is empty".to_owned())
 }
 
@@ -34,7 +41,7 @@ fn value<'t>(
             let number = text.parse().ok().and_then(Number::from_f64);
             match (number, &*text) {
                 (Some(number), _) => Value::Number(number),
-                (None, "" | "~" | "null") => Value::Null,
+                (None, "" | "~" | "null" | "Null" | "NULL") => Value::Null,
                 (None, text) => text.into(),
             }
         }
@@ -50,7 +57,10 @@ fn value<'t>(
             let mut map = serde_json::Map::new();
             while let Some(key) = next()? {
                 let key = key.as_str().ok_or("a key is no text")?.to_owned();
-                map.insert(key, next()?.unwrap_or_default());
+                let told = format!("the key {key} comes twice");
+                if map.insert(key, next()?.unwrap_or_default()).is_some() {
+                    return Err(told);
+                }
             }
             map.into()
         }

@@ -99,7 +99,13 @@ fn read_document(
             _ => Place::Byte(offset),
         };
         // In version 1 lists are objects.
-        let advice = if error.is_data() { EXPORT } else { BROKEN };
+        let document: serde_json::Value = serde_json::from_slice(json).unwrap_or_default();
+        let version = document["asset"]["version"].as_str().unwrap_or("2");
+        let advice = if version.starts_with('1') {
+            EXPORT
+        } else {
+            BROKEN
+        };
         Fault::new("JSON", place, "glTF 2.0", error.to_string(), advice)
     })?;
     document.check()?;

@@ -57,9 +57,7 @@ pub(super) fn find(
     if images.is_empty() {
         images.push(None);
     }
-    let before = textures.failed.len();
     images.into_iter().find_map(|image| {
-        let failed = before..textures.failed.len();
         let (number, image) = image.unzip();
         let uri = image.and_then(|image| image.uri.as_deref());
         let file = uri.filter(|uri| !uri.starts_with("data:")).map(unescaped);
@@ -73,7 +71,7 @@ pub(super) fn find(
             mode,
             wrap: sampler.map_or([Wrap::Repeat; 2], |s| [s.wrap_s, s.wrap_t].map(wrap)),
         };
-        let made = textures.get(parts, |_| {
+        textures.get(parts, |_| {
             let missing = |what: &str| io::Error::new(ErrorKind::NotFound, what.to_owned());
             let image = image.ok_or_else(|| {
                 let others = found.and_then(|texture| texture.extensions.as_object());
@@ -100,9 +98,6 @@ pub(super) fn find(
                     Ok(bytes.to_vec())
                 }
             }
-        })?;
-        // Where a better picture cannot be read, this one is in its place.
-        textures.failed.drain(failed);
-        Some(made)
+        })
     })
 }

@@ -254,6 +254,10 @@ impl<'d> Reader<'d> {
         let texture = picture::find(document, buffers, beside, wanted, &mut self.textures);
         Ok(texture.map(|texture| {
             builder.set_texture(number, texture);
+            if let AlphaMode::Mask(_) = wanted.1 {
+                // The texels have the mask.
+                builder.set_opaque(number);
+            }
             Places { uvs, transform }
         }))
     }
@@ -410,8 +414,7 @@ fn understood(material: &FileMaterial) -> Material {
     let [r, g, b, a] = factor.unwrap_or([1.0; 4]);
     let alpha = match material.alpha_mode.as_deref() {
         Some("BLEND") => a,
-        // That of a texture's texels is compared there. Written so that an alpha that is no number is opaque.
-        Some("MASK") if material.base().base_color_texture.is_some() => 1.0,
+        // Written so that an alpha that is no number is opaque.
         Some("MASK") if a < material.alpha_cutoff.unwrap_or(0.5) => 0.0,
         _ => 1.0,
     };
