@@ -119,7 +119,7 @@ pub(super) struct Textures {
     /// By their parts.
     made: HashMap<String, Option<Arc<Texture>>>,
     bytes: u64,
-    failed: Vec<String>,
+    warnings: Vec<String>,
 }
 
 impl Textures {
@@ -168,7 +168,7 @@ impl Textures {
             )),
         };
         let told = told.map(|told| format!("the texture {name} {told}"));
-        self.failed.extend(told);
+        self.warnings.extend(told);
         let picture = picture.ok().map(|(picture, _)| Rc::new(picture));
         self.bytes += picture.as_ref().map_or(0, |p| 4 * p.texels.len() as u64);
         self.pictures.insert(name.to_owned(), picture.clone());
@@ -176,7 +176,9 @@ impl Textures {
     }
 
     pub(super) fn tell(&self, builder: &mut MeshBuilder) {
-        self.failed.iter().for_each(|warning| builder.warn(warning));
+        for warning in &self.warnings {
+            builder.warn(warning);
+        }
     }
 }
 
