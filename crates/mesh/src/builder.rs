@@ -21,6 +21,7 @@ const MOST: usize = u32::MAX as usize;
 pub struct MeshBuilder {
     mesh: Mesh,
     not_finite: u64,
+    no_place: u64,
     degenerate: u64,
     invisible: u64,
     seen: u64,
@@ -167,7 +168,9 @@ impl MeshBuilder {
             let first = texture.map_or([0.0; 2], |texture| texture.repetition(places[0]));
             places.map(|place| [0, 1].map(|k| (place[k] - first[k]) as f32))
         });
-        if let Some(near) = near.filter(|near| near.as_flattened().iter().all(|c| c.is_finite())) {
+        let sound = near.filter(|near| near.as_flattened().iter().all(|c| c.is_finite()));
+        self.no_place += u64::from(near.is_some() && sound.is_none());
+        if let Some(near) = sound {
             let none = [[f32::NAN; 2]; 3];
             self.mesh.places.pad(self.mesh.triangles.len(), none);
             self.mesh.places.push(near);
@@ -261,8 +264,24 @@ impl MeshBuilder {
             mesh.materials.push(Material::default_color());
         }
         let is_known = |material: u32| (material as usize) < mesh.materials.len();
+        let mut unknown = 0;
         for material in mesh.material_of.iter_mut().filter(|m| !is_known(**m)) {
             *material = 0;
+            unknown += 1;
+        }
+        for (count, what) in [
+            (
+                unknown,
+                "are of a material that does not exist, and got the first one's colour",
+            ),
+            (
+                self.no_place,
+                "have texture coordinates that are infinite or not numbers, and are drawn without",
+            ),
+        ] {
+            if count > 0 {
+                mesh.warnings.push(format!("{count} triangles {what}"));
+            }
         }
         if mesh.materials.iter().any(|m| m.texture.is_some()) {
             leave_out_clear(mesh);
@@ -346,12 +365,17 @@ mod tests {
             builder.triangle(triangle, None, 9).unwrap();
         }
         let bad = [[0.0; 3], [f32::NAN; 3], [0.0, 3.0, 0.0]];
-        builder.triangle([0, 1, 2], Some(bad), 0).unwrap();
+        let places = [[0.0; 2], [f64::NAN; 2], [0.0; 2]];
+        builder
+            .textured_triangle([0, 1, 2], Some(bad), 0, Some(places))
+            .unwrap();
         assert_eq!(builder.triangle([0, 1, 5], None, 0), Err(5));
         let mesh = builder.finish("a.obj").unwrap();
         assert_eq!(mesh.triangles(), [[0, 1, 2]; 2]);
         assert!(mesh.warnings()[0].starts_with("1 of 5 triangles with a coordinate"));
         assert!(mesh.warnings()[1].starts_with("2 of 5 triangles without area"));
+        assert!(mesh.warnings()[2].starts_with("1 triangles are of a material that does not"));
+        assert!(mesh.warnings()[3].starts_with("1 triangles have texture coordinates that are"));
         assert_eq!(mesh.bounds().1, DVec3::new(1.0, 1.0, 0.0));
         assert_eq!(
             (mesh.materials().len(), mesh.material_of()),

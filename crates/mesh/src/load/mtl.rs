@@ -51,6 +51,7 @@ struct Found {
     is_emissive: bool,
     /// It colours the light that it lets through.
     is_filter: bool,
+    has_ambient_picture: bool,
 }
 
 pub(super) fn read(bytes: &[u8], colors: ColorSpace) -> Library {
@@ -80,6 +81,10 @@ pub(super) fn read(bytes: &[u8], colors: ColorSpace) -> Library {
             ("tf", Some(last)) => {
                 let colors: Vec<f32> = numbers.flatten().take(3).collect();
                 last.is_filter = colors.iter().any(|&of| of != colors[0]);
+                true
+            }
+            ("map_ka", Some(last)) => {
+                last.has_ambient_picture = true;
                 true
             }
             ("kd", Some(last)) => {
@@ -133,6 +138,10 @@ pub(super) fn read(bytes: &[u8], colors: ColorSpace) -> Library {
         (
             count(|of| of.pictures.place.has_levels),
             "change the brightness of a picture (-mm), which is not drawn",
+        ),
+        (
+            count(|of| of.has_ambient_picture && of.pictures.color.is_none()),
+            "have a picture of ambient light alone (map_Ka), which is not drawn",
         ),
     ];
     let counts = counts.into_iter().filter(|(count, _)| *count > 0);

@@ -54,7 +54,7 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
         f -5 -4 -3 -2 -1\ng other\nusemtl blue\nf 1/ 2/ 3/\nl 1 2\np 1\nusemtl lost\nf 1 2 5\n\
         usemtl gone\nf 1 2 3\nmtllib none.mtl\n";
     let mtl = "# c\nKd 1 1 1\nNewMtl red one\n kd 0.5 0 0\nTR 0.25\nKe 0 0 0\nKe 0 2 0\nmap_Ke a.png\nnewmtl blue\nKd 0.5\nKd 0 0 1\nd -halo 0.5\n\
-        map_Kd -mm 0 2 a.png\nKd spectral x.rfl\nTf 1 0 0\nnewmtl gone\nd 0\nmap_Kd -clamp on\nmap_ke a.png\nnewmtl \u{fc}\nKe 0 0 0\n";
+        map_Kd -mm 0 2 a.png\nKd spectral x.rfl\nTf 1 0 0\nnewmtl gone\nd 0\nmap_Kd -clamp on\nmap_ke a.png\nmap_Ka a.png\nnewmtl \u{fc}\nKe 0 0 0\n";
     // sRGB 0.5 is 0.214 of the light; linear 0.5 stays.
     for (mtl_colors, red) in [(ColorSpace::Srgb, 0.214), (ColorSpace::Linear, 0.5)] {
         let mesh = obj(text, mtl, mtl_colors);
@@ -76,6 +76,7 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
             "a b.mtl: 2 materials emit light",
             "a b.mtl: 1 materials colour the light behind them",
             "a b.mtl: 1 materials change the brightness of a picture",
+            "a b.mtl: 1 materials have a picture of ambient light alone",
         ];
         has(mesh.warnings(), &warnings);
     }

@@ -177,19 +177,22 @@ fn what_is_not_drawn_is_warned_of() {
         "1 materials emit light",
         "1 materials transmit light",
         "1 primitives have a texture, but no texture coordinates",
+        "1 primitives have fewer normals, colours or texture coordinates",
     ];
     has(mesh.warnings(), &warnings);
-    assert_eq!(mesh.warnings().len(), 4);
+    assert_eq!(mesh.warnings().len(), 5);
     // All opaque, or of no effect.
     json["materials"][0]["alphaMode"] = "OPAQUE".into();
-    assert_eq!(mesh_of(&json).warnings().len(), 3);
+    assert_eq!(mesh_of(&json).warnings().len(), 4);
     json["accessors"][1]["count"] = 5.into();
     json["scene"] = 7.into();
+    json["meshes"][0]["primitives"][0]["material"] = 3.into();
     json["meshes"].as_array_mut().unwrap().push(json!({}));
     let warnings = [
         "1 meshes are in no node that is shown",
         "the default scene 7 is none of 1; all nodes are drawn",
         "2 primitives end within a triangle, which was passed over",
+        "1 triangles are of a material that does not exist",
     ];
     has(mesh_of(&json).warnings(), &warnings);
     let instances = json!({"attributes": {"TRANSLATION": 0, "_COLOR_0": 0}});

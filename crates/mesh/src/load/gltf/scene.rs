@@ -321,7 +321,9 @@ impl<'d> Reader<'d> {
         let mirrored = placed.determinant() < 0.0;
         // The first material is the one of triangles without.
         let material = match (primitive.material, &colors) {
-            (Some(material), _) => (material as u32).saturating_add(1),
+            (Some(material), _) if material < self.document.materials.len() => material as u32 + 1,
+            // The builder tells of materials that do not exist.
+            (Some(_), _) => u32::MAX,
             (None, None) => 0,
             (None, Some(_)) => {
                 let new = || builder.material(Material::vertex_colors());
@@ -329,6 +331,12 @@ impl<'d> Reader<'d> {
             }
         };
         let places = self.places(primitive, material, builder)?;
+        let uvs = places.as_ref().map(|places| &places.uvs);
+        let mut given = [normals.as_ref(), colors.as_ref(), uvs]
+            .into_iter()
+            .flatten();
+        let told = "primitives have fewer normals, colours or texture coordinates than positions; the rest are 0";
+        self.left_out(given.any(|of| of.count < positions.count), told);
         for number in 0..triangles {
             let mut at = match primitive.mode.unwrap_or(4) {
                 4 => [3 * number, 3 * number + 1, 3 * number + 2],
