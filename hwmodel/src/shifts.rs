@@ -43,20 +43,31 @@ pub struct ShiftProbe {
 struct NumberHasher(u64);
 
 impl Hasher for NumberHasher {
-    fn write(&mut self, bytes: &[u8]) {
-        for number in bytes.chunks(8) {
-            let number = number
-                .iter()
-                .rfold(0, |all, &byte| all << 8 | u64::from(byte));
-            // 2^64 over the golden ratio.
-            let product = u128::from(self.0 ^ number) * 0x9e37_79b9_7f4a_7c15;
-            // Both ends of the hash are used: for the table's index and for the tag.
-            self.0 = (product >> 64) as u64 ^ product as u64;
-        }
+    #[inline]
+    fn write_usize(&mut self, number: usize) {
+        self.0 = self.0.rotate_left(8) ^ number as u64;
     }
 
+    #[inline]
+    fn write_u32(&mut self, number: u32) {
+        self.write_usize(number as usize);
+    }
+
+    #[inline]
+    fn write_u8(&mut self, number: u8) {
+        self.write_usize(number.into());
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|&byte| self.write_u8(byte));
+    }
+
+    #[inline]
     fn finish(&self) -> u64 {
-        self.0
+        // 2^64 over the golden ratio.
+        let product = u128::from(self.0) * 0x9e37_79b9_7f4a_7c15;
+        // Both ends of the hash are used: for the table's index and for the tag.
+        (product >> 64) as u64 ^ product as u64
     }
 }
 

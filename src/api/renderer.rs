@@ -449,9 +449,7 @@ fn lock(operations: &Mutex<Counter>) -> MutexGuard<'_, Counter> {
 
 impl Engine for Counting {
     fn render(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> Rendered {
-        let (stats, counter) = self
-            .machine
-            .render_probed(graph, setup, frame, Counter::new())?;
+        let (stats, counter) = self.machine.count(graph, setup, frame)?;
         *lock(&self.operations) = counter;
         Ok(stats)
     }

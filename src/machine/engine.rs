@@ -1,5 +1,6 @@
 //! The scalar engine: frames drawn by the record loop.
 
+use hwmodel::count::Counter;
 use hwmodel::cycles::Organisation;
 use hwmodel::{NoProbe, Probe};
 
@@ -50,6 +51,16 @@ impl Machine {
             self.run_as::<P, L>(graph, setup, frame, probe, most)
         })?;
         drawn.ok_or(EngineError::Records(most))
+    }
+
+    /// Draws a frame and counts its operations. Compiled once, for all crates.
+    pub fn count(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<(Stats, Counter), EngineError> {
+        self.render_probed(graph, setup, frame, Counter::new())
     }
 
     /// Draws a frame of at most `most_records` records; with more, returns `None`, and the frame has no meaning. For

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use hwmodel::cycles::Organisation;
 use serde_json::json;
 
 use super::args::{CameraArgs, PictureArgs, Size};
@@ -12,9 +11,10 @@ use super::methods::{self, DrawFlags};
 use super::report::{self, grouped};
 use super::{outputs, scenes};
 use shiftvox::drawing::Drawable;
+use shiftvox::frame::Frame;
+use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::picture;
 use shiftvox::project::Stop;
-use shiftvox_lab::model::frame;
 
 /// The only file that is replaced without --force.
 const PICTURE: &str = "out/demo.png";
@@ -41,7 +41,12 @@ pub(super) fn run(console: &Console) -> Result<(), CliError> {
         .camera(&drawing.bounds(), scene.up, (SIDE, SIDE), 0.0);
     let (graph, setup) = (&scene.graph, drawing.setup(&camera)?);
     let overflow = draw_args.engine.rules.overflow();
-    let counter = frame::count(graph, &setup, Organisation::default(), overflow)?.counter;
+    let mut machine = Machine::new(MachineOptions {
+        overflow,
+        ..MachineOptions::default()
+    });
+    let mut counted = Frame::nodes_only(SIDE, SIDE);
+    let (_, counter) = machine.count(&graph.view(), &setup, &mut counted)?;
     let shown = methods::frame(&mut drawing, &camera, 1)?;
     outputs::write(&shown, Path::new(PICTURE), &[], true)?;
     let hash = picture::hash_rows(&shown.buffers)?;

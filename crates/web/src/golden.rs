@@ -170,8 +170,7 @@ fn draw(row: &str, used: &mut Machine) -> (Frame, Option<Counter>) {
             .expect(row);
         return (frame, None);
     }
-    let counter = Counter::new();
-    let drawn = Machine::default().render_probed(&view, &setup, &mut frame, counter);
+    let drawn = Machine::default().count(&view, &setup, &mut frame);
     for _ in 0..2 {
         used.render(&view, &setup, &mut again).expect(row);
         assert!(again == frame, "a used machine: {row}");

@@ -1,7 +1,6 @@
 //! The image-order engines as methods.
 
 use hwmodel::Memory;
-use hwmodel::count::Counter;
 use hwmodel::cycles::Organisation;
 
 use super::method::{Examined, Method, Refused};
@@ -100,7 +99,7 @@ fn remark(o: &SetupOptions, handed: bool) -> Option<String> {
 
 fn counters(graph: &Graph, setup: &FrameSetup) -> Result<Stats, Refused> {
     let mut frame = Frame::nodes_only(setup.width, setup.height);
-    let drawn = Machine::default().render_probed(&graph.view(), setup, &mut frame, Counter::new());
+    let drawn = Machine::default().count(&graph.view(), setup, &mut frame);
     let (stats, counter) = drawn.map_err(Refused::because)?;
     let record = u64::from(
         record_bits(&record_fields(setup, graph.len(), Organisation::default())).div_ceil(8),
