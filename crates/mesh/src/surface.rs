@@ -131,7 +131,7 @@ pub trait Surface: Sync {
 }
 
 /// The box for fitted cameras, the same for all files made of a surface.
-pub fn mesh_box<S: Surface + ?Sized>(surface: &S, y_up: bool) -> MeshBox {
+pub fn mesh_box(surface: &dyn Surface, y_up: bool) -> MeshBox {
     let (low, high) = surface.bounds();
     let span = (low.to_array(), high.to_array());
     let corners = (0..surface.len()).flat_map(|number| surface.corners(number));

@@ -69,8 +69,8 @@ fn rounding((low, high): (DVec3, DVec3)) -> f64 {
 }
 
 impl Bin {
-    pub(super) fn draw<S: Surface + ?Sized>(
-        surface: &S,
+    pub(super) fn draw(
+        surface: &dyn Surface,
         view: &RasterCamera,
         options: &RasterOptions,
         bins: &Bins,
@@ -128,7 +128,7 @@ impl Bin {
 }
 
 impl Buffer<'_> {
-    fn triangle<S: Surface + ?Sized>(&mut self, surface: &S, number: u32) {
+    fn triangle(&mut self, surface: &dyn Surface, number: u32) {
         let corners = surface.corners(number as usize);
         let Some(outline) = Outline::of(self.view, &corners) else {
             return;
@@ -144,9 +144,9 @@ impl Buffer<'_> {
         }
     }
 
-    fn part<S: Surface + ?Sized>(
+    fn part(
         &mut self,
-        surface: &S,
+        surface: &dyn Surface,
         number: u32,
         edges: &Edges,
         nearness: &Nearness,
@@ -235,7 +235,7 @@ impl Buffer<'_> {
         }
     }
 
-    fn resolve<S: Surface + ?Sized>(mut self, surface: &S) -> Vec<Pixel> {
+    fn resolve(mut self, surface: &dyn Surface) -> Vec<Pixel> {
         let mut layers = std::mem::take(&mut self.layers);
         layers.retain(|l| self.order(l.sample as usize, l.nearness, l.side) != Ordering::Less);
         layers.sort_unstable_by(|a, b| {
@@ -293,14 +293,14 @@ impl Buffer<'_> {
 }
 
 /// The light of triangles at samples. Each triangle is prepared once.
-struct Paints<'b, 's, S: ?Sized> {
+struct Paints<'b, 's> {
     buffer: &'b Buffer<'b>,
-    surface: &'s S,
+    surface: &'s dyn Surface,
     known: HashMap<u32, Paint<'s>>,
     last: Option<(u32, Paint<'s>)>,
 }
 
-impl<S: Surface + ?Sized> Paints<'_, '_, S> {
+impl Paints<'_, '_> {
     fn light(&mut self, number: u32, at: usize, nearness: f64) -> DVec3 {
         let (buffer, surface) = (self.buffer, self.surface);
         let (view, light) = (buffer.view, buffer.options.light.as_ref());
@@ -313,12 +313,13 @@ impl<S: Surface + ?Sized> Paints<'_, '_, S> {
             f64::from(pixel) * SUBPIXELS as f64 + f64::from(place[k])
         });
         let depth = 1.0 / nearness;
-        if surface.is_textured(number as usize) {
+        let is_last = self.last.as_ref().is_some_and(|(of, _)| *of == number);
+        if !is_last && surface.is_textured(number as usize) {
             let point = point_seen(view, x, y, depth);
             let look = surface.texture(number as usize, point);
             return look.map_or(DVec3::ZERO, |look| light_of(view, light, point, look));
         }
-        if self.last.as_ref().is_none_or(|(of, _)| *of != number) {
+        if !is_last {
             let paint = || Paint::of(view, surface.triangle(number as usize), light);
             self.last = Some((number, *self.known.entry(number).or_insert_with(paint)));
         }

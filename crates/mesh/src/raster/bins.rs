@@ -16,7 +16,7 @@ pub(super) struct Bins {
 }
 
 impl Bins {
-    pub(super) fn fill<S: Surface + ?Sized>(surface: &S, view: &RasterCamera) -> Self {
+    pub(super) fn fill(surface: &dyn Surface, view: &RasterCamera) -> Self {
         let columns = view.width.div_ceil(BIN);
         let rows = view.height.div_ceil(BIN);
         let count = surface.len();

@@ -128,8 +128,8 @@ pub struct RasterPicture {
 ///
 /// # Errors
 /// See [`RasterError`].
-pub fn draw<S: Surface + ?Sized>(
-    surface: &S,
+pub fn draw(
+    surface: &dyn Surface,
     view: &RasterCamera,
     options: &RasterOptions,
     progress: &dyn Progress,
@@ -138,8 +138,8 @@ pub fn draw<S: Surface + ?Sized>(
 }
 
 /// [`draw`], before a picture of these depths, row by row.
-pub(crate) fn draw_before<S: Surface + ?Sized>(
-    surface: &S,
+pub(crate) fn draw_before(
+    surface: &dyn Surface,
     view: &RasterCamera,
     options: &RasterOptions,
     depths: Option<&[f32]>,

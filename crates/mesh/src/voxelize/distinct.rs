@@ -23,7 +23,7 @@ pub(super) struct Distinct<'s> {
 
 impl<'s> Distinct<'s> {
     /// Takes 9 bytes per triangle in addition to the numbers.
-    pub(super) fn of<S: Surface + ?Sized>(surface: &'s S, grid: &Grid) -> Self {
+    pub(super) fn of(surface: &'s dyn Surface, grid: &Grid) -> Self {
         let count = surface.len() as u32;
         let hash = |number: u32| {
             let corners = grid.corners(surface, number);

@@ -43,7 +43,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    pub fn around<S: Surface + ?Sized>(surface: &S, depth: u32) -> Result<Self, GridError> {
+    pub fn around(surface: &dyn Surface, depth: u32) -> Result<Self, GridError> {
         if !(1..=MAX_DEPTH).contains(&depth) {
             return Err(GridError::Depth(depth));
         }
@@ -77,7 +77,7 @@ impl Grid {
     }
 
     /// The triangle's corners on the lattice, 0 to `2^30 - 1`: the nearest points.
-    pub fn corners<S: Surface + ?Sized>(&self, surface: &S, number: u32) -> [[i64; 3]; 3] {
+    pub fn corners(&self, surface: &dyn Surface, number: u32) -> [[i64; 3]; 3] {
         let steps = f64::from(1u32 << (BITS - self.depth)) / self.voxel_size;
         surface.corners(number as usize).map(|corner| {
             let at = (corner - self.origin) * steps;

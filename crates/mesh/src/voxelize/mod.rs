@@ -35,8 +35,8 @@ pub struct VoxelizeReport {
 
 /// Hands every voxel that a triangle touches, but not with a hole of its texture, to `sink`: once, in Morton order, on any
 /// number of threads. Indices run from 0 to `2^depth - 1`. `with_opacities`: for [`opacities`].
-pub fn voxelize<S: Surface + ?Sized>(
-    surface: &S,
+pub fn voxelize(
+    surface: &dyn Surface,
     grid: &Grid,
     with_opacities: bool,
     sink: &mut dyn FnMut(Voxel),
@@ -101,7 +101,7 @@ pub fn voxelize<S: Surface + ?Sized>(
 
 /// Pairs of a voxel and a triangle that touches it, at the least: of each triangle its area, or its longest side, in
 /// faces of voxels. Equal triangles count as one where there are more than [`MOST_LOOKED_AT`] pairs.
-pub fn least_looked_at<S: Surface + ?Sized>(surface: &S, grid: &Grid) -> u64 {
+pub fn least_looked_at(surface: &dyn Surface, grid: &Grid) -> u64 {
     let side = grid.cube().voxel as f64;
     let least = |number: u32| {
         let prepared = Prepared::new(grid.corners(surface, number));

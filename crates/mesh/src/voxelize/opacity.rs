@@ -47,8 +47,8 @@ const NOTHING: Inside = Inside {
 /// # Panics
 /// Unless the graph is the tree, level by level, of the voxels that [`voxelize`](super::voxelize()) made of the same
 /// surface on the same grid.
-pub fn opacities<S: Surface + ?Sized>(
-    surface: &S,
+pub fn opacities(
+    surface: &dyn Surface,
     grid: &Grid,
     graph: &Graph,
     progress: &dyn Progress,

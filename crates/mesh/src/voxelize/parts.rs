@@ -15,8 +15,8 @@ const LEAST_CLOSED: i64 = 2;
 const LEAST_OPEN: i64 = 16;
 
 /// By triangle, the coarsest level at which it is part of a large object; one more than there are where it never is.
-pub(super) fn coarsest_levels<S: Surface + ?Sized>(
-    surface: &S,
+pub(super) fn coarsest_levels(
+    surface: &dyn Surface,
     grid: &Grid,
     numbers: &[u32],
     cube: Cube,
@@ -58,7 +58,7 @@ pub(super) fn coarsest_levels<S: Surface + ?Sized>(
     levels
 }
 
-fn joined_corners<S: Surface + ?Sized>(surface: &S, grid: &Grid, numbers: &[u32]) -> Vec<[u32; 3]> {
+fn joined_corners(surface: &dyn Surface, grid: &Grid, numbers: &[u32]) -> Vec<[u32; 3]> {
     let mut corners: Vec<(u64, u64)> = numbers
         .par_iter()
         .enumerate()

@@ -72,8 +72,8 @@ impl Subtree<'_> {
 }
 
 /// Finds the subtrees of a cube from the root down, does them on all threads and hands on their results in Morton order.
-pub(super) fn walk<S: Surface + ?Sized, T: Send>(
-    surface: &S,
+pub(super) fn walk<T: Send>(
+    surface: &dyn Surface,
     grid: &Grid,
     cube: Cube,
     numbers: Vec<u32>,

@@ -15,7 +15,7 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::shapes::load;
 use super::shared::{ball, mesh_of, on_threads, soup};
 
-pub(super) fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel> {
+pub(super) fn voxels(surface: &dyn Surface, depth: u32) -> Vec<Voxel> {
     let grid = Grid::around(surface, depth).unwrap();
     let mut found = Vec::new();
     let report = voxelize(
@@ -180,7 +180,7 @@ fn add(
 }
 
 /// Compares the voxels of a surface with those of the oracle.
-fn check<S: Surface>(surface: &S, depth: u32) {
+fn check(surface: &dyn Surface, depth: u32) {
     let grid = Grid::around(surface, depth).unwrap();
     let mut expected = BTreeSet::new();
     for number in 0..surface.len() as u32 {

@@ -67,8 +67,8 @@ pub fn plain(samples: u32) -> RasterOptions {
     }
 }
 
-pub fn triangles<S: Surface + ?Sized>(
-    surface: &S,
+pub fn triangles(
+    surface: &dyn Surface,
     view: &RasterCamera,
     samples: u32,
     background: Option<[u8; 3]>,

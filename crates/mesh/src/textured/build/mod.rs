@@ -68,8 +68,8 @@ pub enum BuildError {
     FarAway { extent: f64, distance: f64 },
 }
 
-pub fn build<S: Surface + ?Sized>(
-    surface: &S,
+pub fn build(
+    surface: &dyn Surface,
     options: &BuildOptions,
     progress: &dyn Progress,
 ) -> Result<TexturedData, BuildError> {
@@ -136,8 +136,8 @@ pub(super) fn bounds(primitives: &[Primitive]) -> (DVec3, DVec3) {
     geometry::bounds(primitives.iter().flat_map(Primitive::positions))
 }
 
-fn build_grid<S: Surface + ?Sized>(
-    surface: &S,
+fn build_grid(
+    surface: &dyn Surface,
     primitives: &[Primitive],
     lattice: &CellGrid,
     element: Element,

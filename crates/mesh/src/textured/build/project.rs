@@ -40,9 +40,9 @@ struct Hit {
     primitive: u32,
 }
 
-pub(super) fn project<S: Surface + ?Sized>(
+pub(super) fn project(
     column: &Column,
-    surface: &S,
+    surface: &dyn Surface,
     corners: &[[[i64; 3]; 3]],
     lattice: &CellGrid,
 ) -> Projected {
