@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use crate::program::{Folder, PROGRAM, ROOT};
 
 /// Scenes and sizes, and the small ones that are taken in their place.
-const SMALL: [(&str, &str); 9] = [
+const SMALL: [(&str, &str); 10] = [
     ("gen:terrain,depth=10", "gen:terrain,depth=5"),
     ("gen:menger,depth=5", "gen:menger,depth=3"),
     ("gen:maze,depth=5", "gen:maze,depth=3"),
@@ -23,6 +23,7 @@ const SMALL: [(&str, &str); 9] = [
     ("--depth 8", "--depth 6"),
     ("--depth 9", "--depth 7"),
     ("--size 128", "--size 32"),
+    ("--size 48", "--size 24"),
     ("--samples 256", "--samples 16"),
 ];
 
