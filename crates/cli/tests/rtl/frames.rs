@@ -11,19 +11,21 @@ use super::views::{Dice, INSIDE, SCENES, TREE, view_from_outside, view_from_with
 
 #[test]
 fn views_from_outside_and_inside_have_the_machines_events_picture_and_cycles() {
+    let small = TREE.replace("--size 64", "--size 32");
     for (machine, events) in [
-        (&STAGE_A, 1_000_000),
-        (&STAGE_B, 250_000),
-        (&STAGE_C, 100_000),
+        (&STAGE_A, 250_000),
+        (&STAGE_B, 50_000),
+        (&STAGE_C, 20_000),
     ] {
-        let agreement = agree(machine, TREE, None);
-        assert!(agreement.events > events && agreement.samples > 1000);
+        let agreement = agree(machine, &small, None);
+        assert!(agreement.events > events && agreement.samples > 250);
         agree(machine, INSIDE, None);
     }
 }
 
 /// Synthesis accepts all machines, and lanes: no latch, no loop, no signal with two drivers.
 #[test]
+#[ignore = "takes half a minute"]
 fn yosys_takes_the_machines() {
     let shelter = tempfile::tempdir().unwrap();
     let script = shelter.path().join("check.ys");
