@@ -68,7 +68,7 @@ fn machine(criterion: &mut Criterion) {
             for size in [128, 512] {
                 let setup = set_up(scene.graph(), *places, size, &options);
                 let mut frame = Frame::new(setup.width, setup.height, false);
-                let drawn = machine.render_probed(&view, &setup, &mut frame, Counter::new());
+                let drawn = machine.count(&view, &setup, &mut frame);
                 let (_, counter) = drawn.expect("a frame");
                 group.throughput(Throughput::Elements(counter.records()));
                 group.bench_function(BenchmarkId::new("alone", size), |bencher| {
@@ -76,8 +76,7 @@ fn machine(criterion: &mut Criterion) {
                     bencher.iter(|| draw().expect("a frame"));
                 });
                 group.bench_function(BenchmarkId::new("counted", size), |bencher| {
-                    let counter = Counter::new;
-                    let mut draw = || machine.render_probed(&view, &setup, &mut frame, counter());
+                    let mut draw = || machine.count(&view, &setup, &mut frame);
                     bencher.iter(|| draw().expect("a frame"));
                 });
             }

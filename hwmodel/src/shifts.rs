@@ -38,7 +38,7 @@ pub struct ShiftProbe {
     beside: bool,
 }
 
-/// Fast for keys of small, dense numbers.
+/// Fast for keys of an address and numbers below 256 after it.
 #[derive(Debug, Clone, Copy, Default)]
 struct NumberHasher(u64);
 

@@ -193,6 +193,33 @@ impl MeshBuilder {
         Ok(())
     }
 
+    /// Gives triangles of unknown materials the first one. Adds warnings of them and of coordinates without effect.
+    fn check_materials(&mut self) {
+        let mesh = &mut self.mesh;
+        if mesh.materials.is_empty() {
+            mesh.materials.push(Material::default_color());
+        }
+        let count = mesh.materials.len();
+        let mut unknown = 0;
+        for material in mesh.material_of.iter_mut() {
+            if *material as usize >= count {
+                *material = 0;
+                unknown += 1;
+            }
+        }
+        let first = format!(
+            "are of materials that do not exist, and got {:?}",
+            mesh.materials[0].name
+        );
+        let places =
+            "had texture coordinates that are infinite or not numbers, which were passed over";
+        for (count, what) in [(unknown, &first[..]), (self.no_place, places)] {
+            if count > 0 {
+                mesh.warnings.push(format!("{count} triangles {what}"));
+            }
+        }
+    }
+
     /// Leaves out triangles of materials with opacity 0, unless there are no others.
     fn leave_out_invisible(&mut self) {
         let mesh = &mut self.mesh;
@@ -223,6 +250,7 @@ impl MeshBuilder {
     /// When no triangle is left, or when there are more than 2^32 of anything.
     pub fn finish(mut self, file: &str) -> Result<Mesh, SceneError> {
         self.check_folder()?;
+        self.check_materials();
         self.leave_out_invisible();
         let in_file = |error: Problem| error.in_file(file);
         if self.too_many {
@@ -260,29 +288,6 @@ impl MeshBuilder {
         }
         let mesh = &mut self.mesh;
         mesh.warnings.append(&mut told);
-        if mesh.materials.is_empty() {
-            mesh.materials.push(Material::default_color());
-        }
-        let is_known = |material: u32| (material as usize) < mesh.materials.len();
-        let mut unknown = 0;
-        for material in mesh.material_of.iter_mut().filter(|m| !is_known(**m)) {
-            *material = 0;
-            unknown += 1;
-        }
-        for (count, what) in [
-            (
-                unknown,
-                "are of a material that does not exist, and got the first one's colour",
-            ),
-            (
-                self.no_place,
-                "have texture coordinates that are infinite or not numbers, and are drawn without",
-            ),
-        ] {
-            if count > 0 {
-                mesh.warnings.push(format!("{count} triangles {what}"));
-            }
-        }
         if mesh.materials.iter().any(|m| m.texture.is_some()) {
             leave_out_clear(mesh);
             for number in 0..mesh.triangles.len() {
@@ -372,10 +377,17 @@ mod tests {
         assert_eq!(builder.triangle([0, 1, 5], None, 0), Err(5));
         let mesh = builder.finish("a.obj").unwrap();
         assert_eq!(mesh.triangles(), [[0, 1, 2]; 2]);
-        assert!(mesh.warnings()[0].starts_with("1 of 5 triangles with a coordinate"));
-        assert!(mesh.warnings()[1].starts_with("2 of 5 triangles without area"));
-        assert!(mesh.warnings()[2].starts_with("1 triangles are of a material that does not"));
-        assert!(mesh.warnings()[3].starts_with("1 triangles have texture coordinates that are"));
+        let told = [
+            "1 triangles are of materials that do not exist, and got \"no material\"",
+            "1 triangles had texture coordinates that are infinite",
+            "1 of 5 triangles with a coordinate",
+            "2 of 5 triangles without area",
+        ];
+        assert!(
+            told.iter()
+                .zip(mesh.warnings())
+                .all(|(a, b)| b.starts_with(a))
+        );
         assert_eq!(mesh.bounds().1, DVec3::new(1.0, 1.0, 0.0));
         assert_eq!(
             (mesh.materials().len(), mesh.material_of()),

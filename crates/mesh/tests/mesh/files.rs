@@ -54,7 +54,7 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
         f -5 -4 -3 -2 -1\ng other\nusemtl blue\nf 1/ 2/ 3/\nl 1 2\np 1\nusemtl lost\nf 1 2 5\n\
         usemtl gone\nf 1 2 3\nmtllib none.mtl\n";
     let mtl = "# c\nKd 1 1 1\nNewMtl red one\n kd 0.5 0 0\nTR 0.25\nKe 0 0 0\nKe 0 2 0\nmap_Ke a.png\nnewmtl blue\nKd 0.5\nKd 0 0 1\nd -halo 0.5\n\
-        map_Kd -mm 0 2 a.png\nKd spectral x.rfl\nTf 1 0 0\nnewmtl gone\nd 0\nmap_Kd -clamp on\nmap_ke a.png\nmap_Ka a.png\nnewmtl \u{fc}\nKe 0 0 0\n";
+        map_Kd -mm 0 2 a.png\nmap_Ka a.png\nKd spectral x.rfl\nTf 1 0 0\nnewmtl gone\nd 0\nmap_Kd -clamp on\nmap_ke a.png\nmap_Ka a.png\nnewmtl \u{fc}\nKe 0 0 0\n";
     // sRGB 0.5 is 0.214 of the light; linear 0.5 stays.
     for (mtl_colors, red) in [(ColorSpace::Srgb, 0.214), (ColorSpace::Linear, 0.5)] {
         let mesh = obj(text, mtl, mtl_colors);
@@ -67,7 +67,7 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
         assert_eq!((first.alpha, blue.alpha), (0.75, 0.5));
         assert_eq!(blue.diffuse, [0.0, 0.0, 1.0]);
         let warnings = [
-            "a b.mtl: line 14 is not understood",
+            "a b.mtl: line 15 is not understood",
             "a.png cannot be read",
             "none.mtl cannot be read",
             "1 triangles have no material",

@@ -186,13 +186,18 @@ fn what_is_not_drawn_is_warned_of() {
     assert_eq!(mesh_of(&json).warnings().len(), 4);
     json["accessors"][1]["count"] = 5.into();
     json["scene"] = 7.into();
-    json["meshes"][0]["primitives"][0]["material"] = 3.into();
+    let primitives = json["meshes"][0]["primitives"].as_array_mut().unwrap();
+    primitives[0]["material"] = 3.into();
+    // Of the material of coloured vertices, which is none of the file's.
+    let attributes = json!({"POSITION": 0, "COLOR_0": 0, "NORMAL": 2});
+    primitives.push(json!({"attributes": attributes, "indices": 1}));
     json["meshes"].as_array_mut().unwrap().push(json!({}));
     let warnings = [
         "1 meshes are in no node that is shown",
         "the default scene 7 is none of 1; all nodes are drawn",
-        "2 primitives end within a triangle, which was passed over",
-        "1 triangles are of a material that does not exist",
+        "3 primitives end within a triangle, which was passed over",
+        "2 primitives have fewer normals, colours or texture coordinates",
+        "1 triangles are of materials that do not exist",
     ];
     has(mesh_of(&json).warnings(), &warnings);
     let instances = json!({"attributes": {"TRANSLATION": 0, "_COLOR_0": 0}});

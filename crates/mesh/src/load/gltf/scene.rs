@@ -322,7 +322,7 @@ impl<'d> Reader<'d> {
         // The first material is the one of triangles without.
         let material = match (primitive.material, &colors) {
             (Some(material), _) if material < self.document.materials.len() => material as u32 + 1,
-            // The builder tells of materials that do not exist.
+            // The builder warns of it.
             (Some(_), _) => u32::MAX,
             (None, None) => 0,
             (None, Some(_)) => {
@@ -335,7 +335,7 @@ impl<'d> Reader<'d> {
         let mut given = [normals.as_ref(), colors.as_ref(), uvs]
             .into_iter()
             .flatten();
-        let told = "primitives have fewer normals, colours or texture coordinates than positions; the rest are 0";
+        let told = "primitives have fewer normals, colours or texture coordinates than positions";
         self.left_out(given.any(|of| of.count < positions.count), told);
         for number in 0..triangles {
             let mut at = match primitive.mode.unwrap_or(4) {
