@@ -11,7 +11,6 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
 use hwmodel::NoProbe;
-use hwmodel::count::Counter;
 use shiftvox::fast::{Fast, FastOptions, Instructions};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
