@@ -27,7 +27,7 @@ use crate::scene_table::SCENES;
 use crate::scenes::*;
 
 /// Cameras at each place, unless `SHIFTVOX_ROUNDS` sets another number.
-const ROUNDS: u32 = 2;
+const ROUNDS: u32 = 1;
 
 /// Most records of a frame, and of one under the rules that subdivide solids.
 const MOST_RECORDS: u64 = 2_000_000;
