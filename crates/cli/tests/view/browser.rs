@@ -34,7 +34,7 @@ fn assert_canvas(browser: &mut Browser, id: &str, file: &[u8], command: &str) {
 #[test]
 #[ignore = "needs chromium"]
 fn the_page_turns_compares_and_shows_what_render_draws() {
-    let program = Program::start("assets/tree.vox tests/data/axes.vox --size 256");
+    let program = Program::start("assets/tree.vox tests/data/axes.vox --size 128");
     let browser = &mut Browser::open(&program.address);
     let mut commands = vec![assert_is_renders(browser)];
 
@@ -110,7 +110,7 @@ fn the_page_turns_compares_and_shows_what_render_draws() {
 #[test]
 #[ignore = "needs chromium"]
 fn voxels_are_picked() {
-    let program = Program::start("assets/tree.vox tests/data/axes.vox --size 256");
+    let program = Program::start("assets/tree.vox tests/data/axes.vox --size 128");
     let browser = &mut Browser::open(&program.address);
     browser.wait(STILL);
     for engine in ["", "machine"] {
@@ -118,11 +118,11 @@ fn voxels_are_picked() {
             "view.flags.engine = '{engine}'; $('scene').onchange()"
         ));
         let command = assert_is_renders(browser);
-        let at = browser.value("(() => { const b = canvas.getBoundingClientRect(); return [b.left, b.top, b.width / 256]; })()");
+        let at = browser.value("(() => { const b = canvas.getBoundingClientRect(); return [b.left, b.top, b.width / 128]; })()");
         let [left, top, scale] = [0, 1, 2].map(|k| at[k].as_f64().unwrap());
         let picked = |browser: &mut Browser, [x, y]: [usize; 2]| {
             browser.wait("voxel && shown.whole === view.version && fast.isFree");
-            let [i, j, k, level] = voxel_of(&command, [x, y], 256);
+            let [i, j, k, level] = voxel_of(&command, [x, y], 128);
             let said = browser.text("$('voxel').innerText");
             let expected = [format!("{i}, {j}, {k}"), format!("{level} of ")];
             assert!(
@@ -132,22 +132,22 @@ fn voxels_are_picked() {
             browser.text("$('outline').getAttribute('d')")
         };
         let place = |x: usize, y: usize| [x, y].map(|at| (at as f64 + 0.5) * scale);
-        let [x, y] = place(120, 100);
+        let [x, y] = place(60, 50);
         browser.drag([left + x, top + y], [left + x + 1.0, top + y], "left");
-        let first = picked(browser, [120, 100]);
+        let first = picked(browser, [60, 50]);
         browser.value("unpick()");
-        let [x, y] = place(150, 140);
+        let [x, y] = place(75, 70);
         let touch = |kind: &str, points| json!({ "type": kind, "touchPoints": points });
         let finger = json!([{ "x": left + x, "y": top + y }]);
         browser.input(
             "Touch",
             [touch("touchStart", finger), touch("touchEnd", json!([]))],
         );
-        let second = picked(browser, [150, 140]);
+        let second = picked(browser, [75, 70]);
         browser.value("unpick(); canvas.focus()");
         let key = |key: &str| ["keyDown", "keyUp"].map(|kind| json!({ "type": kind, "key": key }));
         browser.input("Key", key("p"));
-        let third = picked(browser, [128, 128]);
+        let third = picked(browser, [64, 64]);
         assert!(first.starts_with('M') && first != second && second != third);
         assert_eq!(assert_is_renders(browser), command, "the view did not move");
     }
@@ -169,7 +169,7 @@ fn voxels_are_picked() {
 #[test]
 #[ignore = "needs chromium"]
 fn backgrounds_and_legends() {
-    let program = Program::start("assets/tree.vox --size 200");
+    let program = Program::start("assets/tree.vox --size 120");
     let browser = &mut Browser::open(&program.address);
     assert!(!assert_is_renders(browser).contains("--background"));
     browser.emulate(false, true);
@@ -221,7 +221,7 @@ fn backgrounds_and_legends() {
 #[test]
 #[ignore = "needs chromium"]
 fn sections_and_parallel_rays() {
-    let program = Program::start("assets/tree.vox --size 200");
+    let program = Program::start("assets/tree.vox --size 120");
     let browser = &mut Browser::open(&program.address);
     let whole = assert_is_renders(browser);
     browser.set("section", "2<");
@@ -414,7 +414,7 @@ fn pages_wait_for_a_place_and_for_the_program() {
 #[test]
 #[ignore = "needs chromium"]
 fn the_slider_shows_the_papers_rule() {
-    let program = Program::start("assets/tree.vox --size 360x330");
+    let program = Program::start("assets/tree.vox --size 180x165");
     let browser = &mut Browser::open(&program.address);
     let whole =
         "shown.paperWhole === view.version && $('difference').textContent.includes('differ')";
@@ -427,7 +427,7 @@ fn the_slider_shows_the_papers_rule() {
     let [mine, paper] = [mine, paper].map(|file| png::decode(&file).unwrap().rgba);
     let differ = mine.iter().zip(&paper).filter(|(a, b)| a != b).count();
     let said = browser.text("$('difference').textContent").replace(',', "");
-    let is_told = said.starts_with(&format!("{differ} of 118800 "));
+    let is_told = said.starts_with(&format!("{differ} of 29700 "));
     assert!(differ > 100 && is_told, "{differ}: {said}");
     // The edge follows the hand.
     let at = browser.value(

@@ -53,13 +53,13 @@ fn meshes_and_their_methods_are_drawn_as_render_draws_them() {
     let folder = tempfile::tempdir().unwrap();
     let made = |name: &str, words: &str| {
         let path = folder.path().join(name).display().to_string();
-        let line = format!("convert assets/knot.obj --quiet {path} {words}");
+        let line = format!("convert assets/wires.obj --quiet {path} {words}");
         assert!(shiftvox(&line).status.success());
         path
     };
-    let far = made("knot.far", "--rays 1000 --leaf-triangles 500");
-    let tvx = made("knot.tvx", "--grid 8 --texels 4");
-    let program = Program::start(&format!("assets/knot.obj {far} {tvx} --lod 2"));
+    let far = made("wires.far", "--rays 1000 --leaf-triangles 500");
+    let tvx = made("wires.tvx", "--grid 8 --texels 4");
+    let program = Program::start(&format!("assets/wires.obj {far} {tvx} --lod 2"));
     let mut page = program.page();
     assert_eq!(page.hello["flags"], json!({ "lod": "2" }));
     for scene in 0..3 {
@@ -122,7 +122,7 @@ fn overlays_are_buffers_as_colours() {
 
 #[test]
 fn a_picked_voxel_is_that_of_the_buffer() {
-    let program = Program::start("assets/tree.vox gen:menger,depth=3 assets/knot.obj");
+    let program = Program::start("assets/tree.vox gen:menger,depth=3 assets/knot.obj --depth 7");
     let mut page = program.page();
     for (scene, engine, lod) in [
         (0, "fast", "0"),
