@@ -9,8 +9,8 @@ use crate::graph::{Graph, MeshBox};
 pub const DEFAULT_FOV: f64 = 40.0;
 /// Largest share of the picture that a fitted object fills.
 const FILL: f64 = 0.94;
-/// Nodes examined to find an object's bounds; others are only enclosed. Cyclic graphs have any number.
-const MAX_VISITS: u32 = if cfg!(fuzzing) { 10_000 } else { 16_000_000 };
+/// Nodes examined to find one of an object's six bounds; others are only enclosed. Cyclic graphs have any number.
+const MAX_VISITS: u32 = if cfg!(fuzzing) { 2_000 } else { 2_000_000 };
 
 /// The world axis that is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,41 +59,12 @@ impl Bounds {
     /// The box of a graph's voxels in object coordinates, finest voxels; of graphs with millions of nodes on their outside
     /// perhaps too large by a few.
     pub fn in_voxels(graph: &Graph) -> Option<([i64; 3], [i64; 3])> {
-        if graph.is_empty() {
-            return None;
+        let (mut low, mut high) = ([0; 3], [1 << graph.depth; 3]);
+        for k in 0..3 {
+            low[k] += distance_from_side(graph, k, false)?;
+            high[k] -= distance_from_side(graph, k, true)?;
         }
-        let view = graph.view();
-        let (mut low, mut high) = ([i64::MAX; 3], [i64::MIN; 3]);
-        let mut visits = 0;
-        let mut open = vec![(graph.root, 0, [0; 3])];
-        while let Some((node, level, corner)) = open.pop() {
-            let side = 1i64 << (graph.depth - level);
-            // Only nodes that may enlarge the box are visited.
-            if (0..3).all(|k| corner[k] >= low[k] && corner[k] + side <= high[k]) {
-                continue;
-            }
-            visits += 1;
-            let mask = view.mask(node);
-            if level + 1 >= graph.depth || mask == 0 || visits > MAX_VISITS {
-                // Of the finest voxels the mask is enough.
-                let is_split = level + 1 == graph.depth && mask != 0;
-                for (k, upper) in [0xf0u8, 0xcc, 0xaa].into_iter().enumerate() {
-                    let half = side / 2 * i64::from(is_split);
-                    low[k] = low[k].min(corner[k] + if mask & !upper == 0 { half } else { 0 });
-                    let above = if mask & upper == 0 { half } else { 0 };
-                    high[k] = high[k].max(corner[k] + side - above);
-                }
-                continue;
-            }
-            for octant in (0..8u8).rev() {
-                if let Some(child) = view.child(node, octant) {
-                    let at = |k: usize| corner[k] + side / 2 * i64::from(octant >> (2 - k) & 1);
-                    open.push((child, level + 1, [at(0), at(1), at(2)]));
-                }
-            }
-        }
-        // In a damaged file, lists of children may lead nowhere.
-        (low[0] < high[0]).then_some((low, high))
+        Some((low, high))
     }
 
     /// The least indices of a graph's voxels in the file, and the greatest plus one, as [`Bounds::in_voxels`].
@@ -181,6 +152,38 @@ impl Bounds {
             ..self.clone()
         }
     }
+}
+
+/// The least distance of a voxel from a side of the object's cube, in finest voxels. The nearer half of a node is searched
+/// first, so that most others are not visited. `None`: there is no voxel (in a damaged file, children may lead nowhere).
+fn distance_from_side(graph: &Graph, axis: usize, is_high: bool) -> Option<i64> {
+    let view = graph.view();
+    let of_high = [0xf0u8, 0xcc, 0xaa][axis];
+    let nearer = if is_high { of_high } else { !of_high };
+    let mut least = None;
+    let mut visits = 0;
+    let mut open = vec![(graph.root, 0, 0i64)];
+    open.truncate(graph.len());
+    while let Some((node, level, at)) = open.pop() {
+        if least.is_some_and(|least| at >= least) {
+            continue;
+        }
+        visits += 1;
+        let mask = view.mask(node);
+        let half = (1i64 << (graph.depth - level)) >> 1;
+        if level + 1 >= graph.depth || mask == 0 || visits > MAX_VISITS {
+            // Of the finest voxels the mask is enough.
+            let is_farther = level + 1 == graph.depth && mask & nearer == 0 && mask != 0;
+            least = Some(at + if is_farther { half } else { 0 });
+            continue;
+        }
+        for (octants, at) in [(!nearer, at + half), (nearer, at)] {
+            let octants = (0..8u8).filter(|octant| octants >> octant & 1 == 1);
+            let children = octants.filter_map(|octant| view.child(node, octant));
+            open.extend(children.map(|child| (child, level + 1, at)));
+        }
+    }
+    least
 }
 
 const RING_POINTS: u32 = 72;
@@ -332,6 +335,8 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::graph::{Builder, LinkedGraph, Silent, Voxel};
+    use crate::split_mix::SplitMix;
 
     fn camera(bounds: &Bounds, up: Up, [azimuth, elevation]: [f64; 2], size: (u32, u32)) -> Camera {
         let direction = Direction { azimuth, elevation };
@@ -363,6 +368,38 @@ mod tests {
             };
             let most = (0..8).map(edge).fold(0.0, f64::max);
             assert!((most - FILL).abs() < 1e-3, "{from:?}: {most}");
+        }
+    }
+
+    #[test]
+    fn boxes_are_those_of_all_voxels() {
+        let mut dice = SplitMix::new(3);
+        for _ in 0..100 {
+            let mut builder = Builder::default();
+            let side = 1 + dice.below(40);
+            let points: Vec<[i64; 3]> = (0..1 + dice.below(9))
+                .map(|_| [0; 3].map(|_| dice.below(side) as i64))
+                .collect();
+            for point in &points {
+                builder.push(Voxel {
+                    index: point.map(|c| c as i32),
+                    ..Voxel::default()
+                });
+            }
+            let graph = builder.finish(([0.0; 3], 1.0), &Silent).unwrap();
+            let of = |k: usize| points.iter().map(move |point| point[k]);
+            let low = [0, 1, 2].map(|k| of(k).min().unwrap());
+            let high = [0, 1, 2].map(|k| of(k).max().unwrap() + 1);
+            assert_eq!(Bounds::in_file(&graph), Some([low, high]));
+        }
+        // One voxel, in the last corner or another.
+        for octant in 0..8usize {
+            let mut graph = LinkedGraph::new(3);
+            let children = std::array::from_fn(|at| (at == octant).then_some(0));
+            graph.add_node([0; 3], children);
+            let place = [4, 2, 1].map(|bit| if octant & bit == 0 { 0 } else { 7 });
+            let [low, high] = Bounds::in_file(&graph.build().unwrap()).unwrap();
+            assert_eq!((low, high), (place, place.map(|c| c + 1)));
         }
     }
 
