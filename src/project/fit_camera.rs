@@ -9,8 +9,8 @@ use crate::graph::{Graph, MeshBox};
 pub const DEFAULT_FOV: f64 = 40.0;
 /// Largest share of the picture that a fitted object fills.
 const FILL: f64 = 0.94;
-/// Nodes examined to find one of an object's six bounds; others are only enclosed. Cyclic graphs have any number.
-const MAX_VISITS: u32 = if cfg!(fuzzing) { 2_000 } else { 2_000_000 };
+/// Nodes of one level that are examined for a bound of an object. More are only enclosed.
+const MOST_NODES: usize = if cfg!(fuzzing) { 1 << 12 } else { 1 << 23 };
 
 /// The world axis that is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,15 +56,18 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box of a graph's voxels in object coordinates, finest voxels; of graphs with millions of nodes on their outside
-    /// perhaps too large by a few.
+    /// The box of a graph's voxels in object coordinates, finest voxels. With millions of nodes at one side it may be too
+    /// large, by a node of the level that has them.
     pub fn in_voxels(graph: &Graph) -> Option<([i64; 3], [i64; 3])> {
+        if graph.is_empty() {
+            return None;
+        }
         let (mut low, mut high) = ([0; 3], [1 << graph.depth; 3]);
         for k in 0..3 {
             low[k] += distance_from_side(graph, k, false)?;
             high[k] -= distance_from_side(graph, k, true)?;
         }
-        Some((low, high))
+        (0..3).all(|k| low[k] < high[k]).then_some((low, high))
     }
 
     /// The least indices of a graph's voxels in the file, and the greatest plus one, as [`Bounds::in_voxels`].
@@ -154,36 +157,60 @@ impl Bounds {
     }
 }
 
-/// The least distance of a voxel from a side of the object's cube, in finest voxels. The nearer half of a node is searched
-/// first, so that most others are not visited. `None`: there is no voxel (in a damaged file, children may lead nowhere).
+/// The least distance of a voxel from a side of the object's cube, in finest voxels.
 fn distance_from_side(graph: &Graph, axis: usize, is_high: bool) -> Option<i64> {
-    let view = graph.view();
-    let of_high = [0xf0u8, 0xcc, 0xaa][axis];
+    let of_high = [0xf0, 0xcc, 0xaa][axis];
     let nearer = if is_high { of_high } else { !of_high };
-    let mut least = None;
-    let mut visits = 0;
-    let mut open = vec![(graph.root, 0, 0i64)];
-    open.truncate(graph.len());
-    while let Some((node, level, at)) = open.pop() {
-        if least.is_some_and(|least| at >= least) {
-            continue;
+    // No voxel is nearer than a lower bound, so where one is as near as that bound, no others need be looked at.
+    let of_one = distance_within(graph, nearer, 1, None)?;
+    distance_within(graph, nearer, MOST_NODES, Some(of_one))
+}
+
+/// The distance of the nearest nodes, from level to level, of which at most `kept` are followed. Ends where it reaches
+/// that of a known voxel. `nearer`: the octants at the side.
+fn distance_within(graph: &Graph, nearer: u8, kept: usize, known: Option<i64>) -> Option<i64> {
+    let view = graph.view();
+    let mut nodes = vec![graph.root];
+    let mut at = 0;
+    for level in 0..graph.depth {
+        // In a damaged file, lists of children may lead nowhere.
+        if nodes.is_empty() {
+            return None;
         }
-        visits += 1;
-        let mask = view.mask(node);
-        let half = (1i64 << (graph.depth - level)) >> 1;
-        if level + 1 >= graph.depth || mask == 0 || visits > MAX_VISITS {
+        let has_leaf = nodes.iter().any(|&node| view.mask(node) == 0);
+        if has_leaf || known == Some(at) {
+            break;
+        }
+        let half = 1i64 << (graph.depth - level - 1);
+        if level + 1 == graph.depth {
             // Of the finest voxels the mask is enough.
-            let is_farther = level + 1 == graph.depth && mask & nearer == 0 && mask != 0;
-            least = Some(at + if is_farther { half } else { 0 });
-            continue;
+            let is_near = nodes.iter().any(|&node| view.mask(node) & nearer != 0);
+            at += if is_near { 0 } else { half };
+            break;
         }
-        for (octants, at) in [(!nearer, at + half), (nearer, at)] {
-            let octants = (0..8u8).filter(|octant| octants >> octant & 1 == 1);
-            let children = octants.filter_map(|octant| view.child(node, octant));
-            open.extend(children.map(|child| (child, level + 1, at)));
+        let children = |octants: u8| {
+            let all = nodes
+                .iter()
+                .flat_map(|&node| (0..8).map(move |octant| (node, octant)));
+            let some = all.filter(move |(_, octant)| octants >> octant & 1 == 1);
+            some.filter_map(|(node, octant)| view.child(node, octant))
+                .take(kept)
+        };
+        let mut next: Vec<u32> = children(nearer).collect();
+        if next.is_empty() {
+            at += half;
+            next = children(!nearer).collect();
         }
+        if next.len() == MOST_NODES {
+            break;
+        }
+        if !graph.links.is_empty() {
+            next.sort_unstable();
+            next.dedup();
+        }
+        nodes = next;
     }
-    least
+    Some(at)
 }
 
 const RING_POINTS: u32 = 72;
@@ -392,14 +419,22 @@ mod tests {
             let high = [0, 1, 2].map(|k| of(k).max().unwrap() + 1);
             assert_eq!(Bounds::in_file(&graph), Some([low, high]));
         }
-        // One voxel, in the last corner or another.
-        for octant in 0..8usize {
-            let mut graph = LinkedGraph::new(3);
-            let children = std::array::from_fn(|at| (at == octant).then_some(0));
-            graph.add_node([0; 3], children);
-            let place = [4, 2, 1].map(|bit| if octant & bit == 0 { 0 } else { 7 });
-            let [low, high] = Bounds::in_file(&graph.build().unwrap()).unwrap();
-            assert_eq!((low, high), (place, place.map(|c| c + 1)));
+        // One voxel or a solid leaf in a corner, sheets, and cycles: a digit is a child by octant, a dot none.
+        for (depth, nodes, low, high) in [
+            (1, ".......0", [1, 1, 1], [2, 2, 2]),
+            (3, "1....... ........", [0, 0, 0], [4, 4, 4]),
+            (3, ".....1.. .......0", [7, 2, 7], [8, 3, 8]),
+            (30, "0.0.0.0.", [0, 0, 0], [1 << 30, 1 << 30, 1]),
+            (30, "....0000", [(1 << 30) - 1, 0, 0], [1 << 30; 3]),
+            (12, "0.1..... 1.......", [0; 3], [1, 2049, 1]),
+        ] {
+            let mut graph = LinkedGraph::new(depth);
+            for children in nodes.split(' ') {
+                let mut children = children.chars().map(|digit| digit.to_digit(10));
+                graph.add_node([0; 3], std::array::from_fn(|_| children.next().flatten()));
+            }
+            let graph = graph.build().unwrap();
+            assert_eq!(Bounds::in_voxels(&graph), Some((low, high)), "{nodes}");
         }
     }
 

@@ -104,10 +104,11 @@ fn wide_views_take_bounded_work() {
                 let view = format!("--fov {fov} --coverage {rule} --size 8");
                 run(scene, &view, 2e6, false);
             }
-            // Each rule from one side; the tree's centres from above take most work of all.
-            let ends = ["any --size 8", "center --size 8 --view top --zoom 2"];
-            let is_most = fov > 179.0 && scene == "tree.vox";
-            for end in &ends[..if is_most { 1 } else { 2 }] {
+            // Each rule from one side. The one that takes longest is left out.
+            for end in ["any --size 8", "center --size 8 --view top --zoom 2"] {
+                if fov < 179.0 && end.starts_with("center") && scene == knots[2] {
+                    continue;
+                }
                 run(scene, &format!("--fov {fov} --coverage {end}"), 1e9, true);
             }
             if fov > 179.0 && scene != "tree.vox" {

@@ -57,7 +57,7 @@ fn meshes_and_their_methods_are_drawn_as_render_draws_them() {
         assert!(shiftvox(&line).status.success());
         path
     };
-    let far = made("wires.far", "--rays 1000 --leaf-triangles 500");
+    let far = made("wires.far", "--rays 1000 --leaf-triangles 50");
     let tvx = made("wires.tvx", "--grid 8 --texels 4");
     let program = Program::start(&format!("assets/wires.obj {far} {tvx} --lod 2"));
     let mut page = program.page();
