@@ -9,8 +9,12 @@ use crate::graph::{Graph, MeshBox};
 pub const DEFAULT_FOV: f64 = 40.0;
 /// Largest share of the picture that a fitted object fills.
 const FILL: f64 = 0.94;
-/// Nodes of one level that are examined for a bound of an object. More are only enclosed.
-const MOST_NODES: usize = if cfg!(fuzzing) { 1 << 12 } else { 1 << 23 };
+/// Most nodes of one level that are followed to find an object's box. Where there are more, it ends at their outer side.
+const MOST_NODES: usize = if cfg!(any(fuzzing, test)) {
+    1 << 8
+} else {
+    1 << 23
+};
 
 /// The world axis that is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,18 +60,12 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box of a graph's voxels in object coordinates, finest voxels. With millions of nodes at one side it may be too
-    /// large, by a node of the level that has them.
+    /// The box of a graph's voxels in object coordinates, finest voxels. With millions of nodes along a side it may be too
+    /// large, by less than a node of the level that has them.
     pub fn in_voxels(graph: &Graph) -> Option<([i64; 3], [i64; 3])> {
-        if graph.is_empty() {
-            return None;
-        }
-        let (mut low, mut high) = ([0; 3], [1 << graph.depth; 3]);
-        for k in 0..3 {
-            low[k] += distance_from_side(graph, k, false)?;
-            high[k] -= distance_from_side(graph, k, true)?;
-        }
-        (0..3).all(|k| low[k] < high[k]).then_some((low, high))
+        let low = [0, 1, 2].map(|k| distance_from_side(graph, k, false));
+        let high = [0, 1, 2].map(|k| (1 << graph.depth) - distance_from_side(graph, k, true));
+        (!graph.is_empty()).then_some((low, high))
     }
 
     /// The least indices of a graph's voxels in the file, and the greatest plus one, as [`Bounds::in_voxels`].
@@ -157,60 +155,53 @@ impl Bounds {
     }
 }
 
-/// The least distance of a voxel from a side of the object's cube, in finest voxels.
-fn distance_from_side(graph: &Graph, axis: usize, is_high: bool) -> Option<i64> {
+/// The least distance of a voxel from a side of the object's cube, in finest voxels. The voxel at the end of a path along
+/// that side is often as near as any could be; then no others are looked at.
+fn distance_from_side(graph: &Graph, axis: usize, is_high: bool) -> i64 {
     let of_high = [0xf0, 0xcc, 0xaa][axis];
     let nearer = if is_high { of_high } else { !of_high };
-    // No voxel is nearer than a lower bound, so where one is as near as that bound, no others need be looked at.
-    let of_one = distance_within(graph, nearer, 1, None)?;
-    distance_within(graph, nearer, MOST_NODES, Some(of_one))
+    let of_path = distance_within(graph, nearer, None);
+    distance_within(graph, nearer, Some(of_path))
 }
 
-/// The distance of the nearest nodes, from level to level, of which at most `kept` are followed. Ends where it reaches
-/// that of a known voxel. `nearer`: the octants at the side.
-fn distance_within(graph: &Graph, nearer: u8, kept: usize, known: Option<i64>) -> Option<i64> {
+/// Goes down from level to level with all nodes that are nearest to a side, until their distance, below which there is no
+/// voxel, is that of a known one. Without a known one, a single node is followed to a voxel. `nearer`: the octants at the
+/// side.
+fn distance_within(graph: &Graph, nearer: u8, known: Option<i64>) -> i64 {
     let view = graph.view();
     let mut nodes = vec![graph.root];
     let mut at = 0;
     for level in 0..graph.depth {
-        // In a damaged file, lists of children may lead nowhere.
-        if nodes.is_empty() {
-            return None;
-        }
-        let has_leaf = nodes.iter().any(|&node| view.mask(node) == 0);
-        if has_leaf || known == Some(at) {
+        let mut masks = nodes.iter().map(|&node| view.mask(node));
+        if known == Some(at) || masks.clone().any(|mask| mask == 0) {
             break;
         }
-        let half = 1i64 << (graph.depth - level - 1);
+        let is_near = masks.any(|mask| mask & nearer != 0);
+        if !is_near {
+            at += 1 << (graph.depth - level - 1);
+        }
+        // Of the finest voxels the mask is enough.
         if level + 1 == graph.depth {
-            // Of the finest voxels the mask is enough.
-            let is_near = nodes.iter().any(|&node| view.mask(node) & nearer != 0);
-            at += if is_near { 0 } else { half };
             break;
         }
-        let children = |octants: u8| {
-            let all = nodes
-                .iter()
-                .flat_map(|&node| (0..8).map(move |octant| (node, octant)));
-            let some = all.filter(move |(_, octant)| octants >> octant & 1 == 1);
-            some.filter_map(|(node, octant)| view.child(node, octant))
-                .take(kept)
-        };
-        let mut next: Vec<u32> = children(nearer).collect();
-        if next.is_empty() {
-            at += half;
-            next = children(!nearer).collect();
-        }
-        if next.len() == MOST_NODES {
+        let octants = if is_near { nearer } else { !nearer };
+        let slots = nodes
+            .iter()
+            .flat_map(|&node| (0..8).map(move |octant| (node, octant)));
+        let mut next: Vec<u32> = slots
+            .filter(|(_, octant)| octants >> octant & 1 == 1)
+            .filter_map(|(node, octant)| view.child(node, octant))
+            .take(if known.is_none() { 1 } else { MOST_NODES })
+            .collect();
+        // In a damaged file, lists of children may lead nowhere.
+        if next.is_empty() || next.len() == MOST_NODES {
             break;
         }
-        if !graph.links.is_empty() {
-            next.sort_unstable();
-            next.dedup();
-        }
+        next.sort_unstable();
+        next.dedup();
         nodes = next;
     }
-    Some(at)
+    at
 }
 
 const RING_POINTS: u32 = 72;
@@ -421,6 +412,7 @@ mod tests {
         }
         // One voxel or a solid leaf in a corner, sheets, and cycles: a digit is a child by octant, a dot none.
         for (depth, nodes, low, high) in [
+            (0, "........", [0; 3], [1; 3]),
             (1, ".......0", [1, 1, 1], [2, 2, 2]),
             (3, "1....... ........", [0, 0, 0], [4, 4, 4]),
             (3, ".....1.. .......0", [7, 2, 7], [8, 3, 8]),
@@ -436,6 +428,19 @@ mod tests {
             let graph = graph.build().unwrap();
             assert_eq!(Bounds::in_voxels(&graph), Some((low, high)), "{nodes}");
         }
+        // Twenty times twenty nodes of two voxels are more than are followed.
+        let mut builder = Builder::default();
+        for at in 0..1600 {
+            builder.push(Voxel {
+                index: [at / 40, at % 40, 0],
+                ..Voxel::default()
+            });
+        }
+        let mut graph = builder.finish(([0.0; 3], 1.0), &Silent).unwrap();
+        assert_eq!(Bounds::in_voxels(&graph), Some(([0; 3], [40, 40, 2])));
+        // Children that do not exist.
+        graph.first = vec![].into();
+        assert_eq!(Bounds::in_voxels(&graph), Some(([0; 3], [64, 64, 32])));
     }
 
     #[test]
