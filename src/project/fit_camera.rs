@@ -10,11 +10,7 @@ pub const DEFAULT_FOV: f64 = 40.0;
 /// Largest share of the picture that a fitted object fills.
 const FILL: f64 = 0.94;
 /// Most nodes of one level that are followed to find an object's box. Where there are more, it ends at their outer side.
-const MOST_NODES: usize = if cfg!(any(fuzzing, test)) {
-    1 << 8
-} else {
-    1 << 23
-};
+const MOST_NODES: usize = 1 << if cfg!(any(fuzzing, test)) { 8 } else { 23 };
 
 /// The world axis that is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +58,7 @@ pub struct Bounds {
 impl Bounds {
     /// The box of a graph's voxels in object coordinates, finest voxels. With millions of nodes along a side it may be too
     /// large, by less than a node of the level that has them.
-    pub fn in_voxels(graph: &Graph) -> Option<([i64; 3], [i64; 3])> {
+    fn in_voxels(graph: &Graph) -> Option<([i64; 3], [i64; 3])> {
         let low = [0, 1, 2].map(|k| distance_from_side(graph, k, false));
         let high = [0, 1, 2].map(|k| (1 << graph.depth) - distance_from_side(graph, k, true));
         (!graph.is_empty()).then_some((low, high))
@@ -389,26 +385,31 @@ mod tests {
         }
     }
 
+    fn graph_of(points: impl IntoIterator<Item = [i32; 3]>) -> Graph {
+        let mut builder = Builder::default();
+        for index in points {
+            builder.push(Voxel {
+                index,
+                ..Voxel::default()
+            });
+        }
+        builder.finish(([0.0; 3], 1.0), &Silent).unwrap()
+    }
+
     #[test]
     fn boxes_are_those_of_all_voxels() {
         let mut dice = SplitMix::new(3);
         for _ in 0..100 {
-            let mut builder = Builder::default();
             let side = 1 + dice.below(40);
-            let points: Vec<[i64; 3]> = (0..1 + dice.below(9))
-                .map(|_| [0; 3].map(|_| dice.below(side) as i64))
+            let points = 0..1 + dice.below(9);
+            let points: Vec<_> = points
+                .map(|_| [0; 3].map(|_| dice.below(side) as i32))
                 .collect();
-            for point in &points {
-                builder.push(Voxel {
-                    index: point.map(|c| c as i32),
-                    ..Voxel::default()
-                });
-            }
-            let graph = builder.finish(([0.0; 3], 1.0), &Silent).unwrap();
-            let of = |k: usize| points.iter().map(move |point| point[k]);
+            let of = |k: usize| points.iter().map(move |point| i64::from(point[k]));
             let low = [0, 1, 2].map(|k| of(k).min().unwrap());
             let high = [0, 1, 2].map(|k| of(k).max().unwrap() + 1);
-            assert_eq!(Bounds::in_file(&graph), Some([low, high]));
+            let found = Bounds::in_file(&graph_of(points.clone()));
+            assert_eq!(found, Some([low, high]));
         }
         // One voxel or a solid leaf in a corner, sheets, and cycles: a digit is a child by octant, a dot none.
         for (depth, nodes, low, high) in [
@@ -429,14 +430,7 @@ mod tests {
             assert_eq!(Bounds::in_voxels(&graph), Some((low, high)), "{nodes}");
         }
         // Twenty times twenty nodes of two voxels are more than are followed.
-        let mut builder = Builder::default();
-        for at in 0..1600 {
-            builder.push(Voxel {
-                index: [at / 40, at % 40, 0],
-                ..Voxel::default()
-            });
-        }
-        let mut graph = builder.finish(([0.0; 3], 1.0), &Silent).unwrap();
+        let mut graph = graph_of((0..1600).map(|at| [at / 40, at % 40, 0]));
         assert_eq!(Bounds::in_voxels(&graph), Some(([0; 3], [40, 40, 2])));
         // Children that do not exist.
         graph.first = vec![].into();
