@@ -7,6 +7,7 @@ use super::lanes::{Isa, Scalar};
 use super::window::{ALL, LEFT_COLUMN, TILE_LOG2, Window, bits};
 use crate::budget::{self, Shortage};
 use crate::frame::{Blend, NO_NODE, color_word};
+use crate::graph::prefetch;
 
 #[derive(Debug)]
 pub(super) struct Fill<'p> {
@@ -199,6 +200,13 @@ impl Pixels<'_> {
         if let Some(shown) = self.shown.get_mut(at) {
             *shown = word;
         }
+    }
+
+    /// Begins to read a square's rows, because [`Pixels::write`] reads what it does not change.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, square: &Window) {
+        let first = self.at(square.left, square.top);
+        (0..8).for_each(|row| prefetch(self.shown, first + row * self.width));
     }
 
     /// Writes words at samples of a square; `step` from a row's words to the next row's.

@@ -49,6 +49,7 @@ fn draw_samples<I: Isa>(
     let is_single = brick.parts.is_single();
     let (square, open, octant) = (samples.square, samples.open, samples.octant);
     let isa = band.isa;
+    band.pixels.prefetch(square);
     let lines = Lines::new(isa, band.constants, projection, samples);
     let mut wanted = if is_single {
         1
@@ -82,7 +83,9 @@ fn draw_samples<I: Isa>(
         wanted &= wanted - 1;
         // One voxel ahead, as whether a voxel is held is unpredictable.
         number = wanted.trailing_zeros() as usize;
-        masks = square_masks(isa, &units, offset_of(number), limits);
+        if wanted != 0 {
+            masks = square_masks(isa, &units, offset_of(number), limits);
+        }
         let held = held & left;
         if held == 0 {
             continue;
