@@ -31,9 +31,21 @@ pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Wi
     if let Some(first) = brick.parts.first_node(band.graph) {
         (0..4).for_each(|line| prefetch(band.pixels.color, first as usize + 21 * line));
     }
+    let window = if is_single {
+        *window
+    } else {
+        projection.window(
+            band.isa,
+            band.constants,
+            level,
+            across,
+            brick.parts.exist,
+            window,
+        )
+    };
     each_square(
         band,
-        window,
+        &window,
         #[inline(always)]
         |band, samples| draw_samples(band, brick, &projection, samples),
     );
@@ -54,7 +66,7 @@ fn draw_samples<I: Isa>(
     let mut wanted = if is_single {
         1
     } else {
-        candidates(isa, &lines, square) & isa.turned(brick.parts.exist, octant)
+        candidates(isa, &lines, open) & isa.turned(brick.parts.exist, octant)
     };
     if wanted == 0 {
         return 0;
@@ -173,14 +185,21 @@ impl<I: Isa> Distances<I> {
     }
 }
 
+/// Voxels whose strips may reach open samples.
 #[inline(always)]
-fn candidates<I: Isa>(isa: I, lines: &Lines<I>, square: &Window) -> u64 {
+fn candidates<I: Isa>(isa: I, lines: &Lines<I>, open: u64) -> u64 {
     let [first, step_x, step_y] = lines.in_widths();
+    let columns = open | open >> 32;
+    let columns = columns | columns >> 16;
+    let columns = (columns | columns >> 8) as u8;
+    let at = |number: u32, step: I::F32x4| step.mul(isa.splat(number as f32));
+    let left = at(columns.trailing_zeros(), step_x);
+    let right = at(7 - columns.leading_zeros(), step_x);
+    let top = at(open.trailing_zeros() / 8, step_y);
+    let bottom = at(7 - open.leading_zeros() / 8, step_y);
+    let least = first.add(left.min(right)).add(top.min(bottom));
+    let greatest = first.add(left.max(right)).add(top.max(bottom));
     let zero = isa.splat(0.0);
-    let across = step_x.mul(isa.splat((square.right - square.left) as f32));
-    let down = step_y.mul(isa.splat((square.bottom - square.top) as f32));
-    let least = first.add(across.min(zero)).add(down.min(zero));
-    let greatest = first.add(across.max(zero)).add(down.max(zero));
     let (unit, middle) = (isa.splat(CELLS_PER_WIDTH), isa.splat(MIDDLE));
     let low = least.fma(unit, middle).max(zero);
     let high = greatest.fma(unit, middle);
