@@ -14,10 +14,9 @@ use super::lines::{BLOCKS, Line, Lines, OFFSETS};
 use super::parts::Part;
 use super::projection::Projection;
 use super::strips::Row;
+use super::waiting::MOST;
 use super::window::{Window, bits};
-
-/// Parts that lines are compared with for all samples together.
-const ATTEMPTS: u32 = 2;
+use crate::graph::{GraphView, prefetch};
 
 #[inline(always)]
 pub(super) fn draw<I: Isa, const DEEP: bool>(
@@ -76,16 +75,17 @@ fn draw_samples<I: Isa, const DEEP: bool>(
         [found, more] = next_blocks(band, &lines, tables, any, true);
         left = more & !found;
     }
-    let attempts = if band.blends { 0 } else { ATTEMPTS };
-    for _ in 0..attempts {
-        let [met, none] = meet_first::<I, DEEP>(band, &lines, found, pair);
+    if !band.blends {
+        drawn = meet_first::<I, DEEP>(band, &lines, found, pair);
+        let [met, none] = meet_second::<I, DEEP>(band, &lines, found & !drawn, pair);
         drawn |= met;
-        found &= !(met | none);
+        found &= !(drawn | none);
         if DEEP {
-            let wanted = left | none & more & !met;
+            let wanted = left | none & more;
             let [begun, others] = next_blocks(band, &lines, tables, wanted, false);
-            more = more & !wanted | others;
-            (found, left) = (found | begun, others & !begun);
+            let met = meet_first::<I, DEEP>(band, &lines, begun, pair);
+            drawn |= met;
+            (found, left) = ((found | begun) & !met, others & !begun);
         }
     }
     for bit in bits(left | found) {
@@ -171,33 +171,62 @@ fn next_blocks<I: Isa>(
     [found, others]
 }
 
-/// Of samples, those whose lines meet the first part that they may meet, and those that have no other. Without branches,
-/// because the outcome is unpredictable.
+/// Of samples, those whose lines certainly meet the first part that they may meet. Without branches, because the outcome
+/// is unpredictable.
 #[inline(always)]
 fn meet_first<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     lines: &Lines<I>,
     found: u64,
     pair: u32,
+) -> u64 {
+    let mut met = 0;
+    for bit in bits(found) {
+        let line = line_of::<I, DEEP>(band, lines, bit);
+        let part = band.candidates.0[bit].trailing_zeros() & 63;
+        let [is_met, _] = lines.are_inside(band.isa, &line, &OFFSETS[part as usize]);
+        band.hits[bit].part = (part ^ pair) as u8;
+        met |= u64::from(is_met) << bit;
+    }
+    met
+}
+
+/// Of samples whose lines did not meet their first part, those that meet the second, and those that have no other.
+#[inline(always)]
+fn meet_second<I: Isa, const DEEP: bool>(
+    band: &mut Band<'_, I>,
+    lines: &Lines<I>,
+    found: u64,
+    pair: u32,
 ) -> [u64; 2] {
-    let isa = band.isa;
     let (mut met, mut none) = (0, 0);
     for bit in bits(found) {
-        let mut line = lines.line(isa, &SAMPLES[bit]);
-        if DEEP {
-            let block = usize::from(band.hits[bit].block & 63);
-            line = line.about(isa, &BLOCKS[block]);
-        }
+        let line = line_of::<I, DEEP>(band, lines, bit);
         let parts = band.candidates.0[bit];
-        let part = parts.trailing_zeros() as usize & 63;
-        let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
-        band.hits[bit].part = (part as u32 ^ pair) as u8;
-        met |= u64::from(is_met) << bit;
+        let offset = |parts: u64| &OFFSETS[parts.trailing_zeros() as usize & 63];
+        let [_, may_be_met] = lines.are_inside(band.isa, &line, offset(parts));
+        if may_be_met {
+            continue;
+        }
+        let parts = parts & parts.wrapping_sub(1);
+        let [is_met, may_be_met] = lines.are_inside(band.isa, &line, offset(parts));
+        band.hits[bit].part = (parts.trailing_zeros() & 63 ^ pair) as u8;
+        met |= u64::from(is_met && parts != 0) << bit;
         let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
         band.candidates.0[bit] = parts;
         none |= u64::from(parts == 0) << bit;
     }
     [met, none]
+}
+
+#[inline(always)]
+fn line_of<I: Isa, const DEEP: bool>(band: &Band<'_, I>, lines: &Lines<I>, bit: usize) -> Line<I> {
+    let line = lines.line(band.isa, &SAMPLES[bit]);
+    if !DEEP {
+        return line;
+    }
+    let block = usize::from(band.hits[bit].block & 63);
+    line.about(band.isa, &BLOCKS[block])
 }
 
 impl BrickBlocks {
@@ -225,13 +254,18 @@ impl BrickBlocks {
 
 impl Hit {
     #[inline(always)]
-    fn part<I: Isa, const DEEP: bool>(self, band: &Band<'_, I>, brick: Brick<'_>) -> Part {
+    fn part<const DEEP: bool>(
+        self,
+        graph: &GraphView<'_>,
+        blocks: &BrickBlocks,
+        brick: Brick<'_>,
+    ) -> Part {
         let parts = if DEEP {
-            &band.brick_blocks.parts[usize::from(self.block & 63)]
+            &blocks.parts[usize::from(self.block & 63)]
         } else {
             brick.parts
         };
-        parts.part(band.graph, u32::from(self.part))
+        parts.part(graph, u32::from(self.part))
     }
 
     #[inline(never)]
@@ -241,7 +275,7 @@ impl Hit {
         brick: Brick<'_>,
         pair: u32,
     ) -> (u32, Path) {
-        let part = self.part::<I, DEEP>(band, brick);
+        let part = self.part::<DEEP>(band.graph, band.brick_blocks, brick);
         let path = Path {
             block: DEEP.then(|| u32::from(self.block) ^ pair),
             part: u32::from(self.part),
@@ -260,19 +294,24 @@ fn show_hits<I: Isa, const DEEP: bool>(
     pair: u32,
 ) {
     let first = band.pixels.at(square.left, square.top);
-    let first_node = brick.parts.first_node(band.graph);
+    let (graph, blocks, hits) = (band.graph, &*band.brick_blocks, &band.hits);
+    let first_node = brick.parts.first_node(graph);
     band.waiting.make_room(&mut band.pixels);
+    let mut count = band.waiting.count;
     for bit in bits(drawn) {
-        let at = first + band.sample_offsets[bit] as usize;
-        let hit = band.hits[bit];
+        let hit = hits[bit];
         let node = if DEEP {
-            hit.part::<I, DEEP>(band, brick).node
+            hit.part::<DEEP>(graph, blocks, brick).node
         } else {
             let part = u32::from(hit.part);
-            brick.parts.node(band.graph, first_node, part)
+            brick.parts.node(graph, first_node, part)
         };
-        band.waiting.push(&mut band.pixels, at, node);
+        prefetch(band.pixels.color, node as usize);
+        let at = first + band.sample_offsets[bit] as usize;
+        band.waiting.hits[count % MOST] = (at, node);
+        count += 1;
     }
+    band.waiting.count = count;
     if band.pixels.wants_voxels() {
         for bit in bits(drawn) {
             let at = first + band.sample_offsets[bit] as usize;

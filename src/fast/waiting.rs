@@ -3,16 +3,16 @@
 
 use super::canvas::Pixels;
 use super::directions::SAMPLES;
-use crate::graph::prefetch;
+use crate::frame::color_word;
 
 /// Hits that wait at most: those of four squares.
-const MOST: usize = 4 * SAMPLES.len();
+pub(super) const MOST: usize = 4 * SAMPLES.len();
 
 #[derive(Debug)]
 pub(super) struct Waiting {
     /// Places in the picture, and nodes.
-    hits: [(usize, u32); MOST],
-    count: usize,
+    pub(super) hits: [(usize, u32); MOST],
+    pub(super) count: usize,
 }
 
 impl Waiting {
@@ -31,24 +31,37 @@ impl Waiting {
         }
     }
 
-    /// Adds a hit, after [`Waiting::make_room`]; one that needs no colour is shown at once. The remainder is for the
-    /// compiler, which sees no overflow then.
-    #[inline(always)]
-    pub(super) fn push(&mut self, pixels: &mut Pixels<'_>, at: usize, node: u32) {
-        if pixels.color.is_empty() {
-            pixels.set(at, node);
-            return;
-        }
-        prefetch(pixels.color, node as usize);
-        self.hits[self.count % MOST] = (at, node);
-        self.count += 1;
-    }
-
     #[inline(always)]
     pub(super) fn show(&mut self, pixels: &mut Pixels<'_>) {
-        for &(at, node) in &self.hits[..self.count.min(MOST)] {
-            pixels.set(at, pixels.word(node));
-        }
+        let hits = &self.hits[..self.count.min(MOST)];
         self.count = 0;
+        if pixels.color.is_empty() {
+            hits.iter().for_each(|&(at, node)| pixels.set(at, node));
+            return;
+        }
+        let (shown, colors) = (&mut *pixels.shown, pixels.color.as_flattened());
+        for &(at, node) in hits {
+            if let Some(shown) = shown.get_mut(at) {
+                *shown = word_of(colors, node as usize);
+            }
+        }
+    }
+}
+
+/// The word of a node's colour: four bytes are read at once if another colour follows.
+#[inline(always)]
+fn word_of(colors: &[u8], node: usize) -> u32 {
+    let first = node.wrapping_mul(3);
+    match colors.get(first..first.wrapping_add(4)) {
+        Some(&[r, g, b, next]) => u32::from_be_bytes([r, g, b, next]) >> 8 | 0xff << 24,
+        _ => last_word(colors, node),
+    }
+}
+
+#[inline(never)]
+fn last_word(colors: &[u8], node: usize) -> u32 {
+    match colors.get(node.wrapping_mul(3)..) {
+        Some(&[r, g, b]) => color_word([r, g, b]),
+        _ => 0,
     }
 }
